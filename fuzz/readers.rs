@@ -10,7 +10,7 @@ use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use arbitrary::Unstructured;
-use colltrans_assembly_io::read::{ReadOptions, disabled, read_from};
+use colltrans_assembly_io::read::{ReadOptions, read_disabled_pairs, read_from};
 use colltrans_assembly_io::robot::Table;
 use colltrans_mesh::Format;
 
@@ -120,7 +120,7 @@ pub(crate) fn srdf(bytes: &[u8]) {
     let Some(file) = file_of(bytes, written::srdf) else { return };
     let path = std::env::temp_dir().join(format!("colltrans-fuzz-{}.srdf", std::process::id()));
     std::fs::write(&path, file).expect("a temporary file");
-    if let Err(error) = disabled(&path) {
+    if let Err(error) = read_disabled_pairs(&path) {
         assert!(!error.to_string().is_empty());
     }
     std::fs::remove_file(&path).expect("the temporary file");

@@ -140,7 +140,7 @@ class Lines:
             ["--solver", "cta", *self.some((0.5, "--start", "ellipsoids"), (0.5, "--until", "0.001"))]
         )
         solver = self.random.choice(solvers) if self.one_in(3) else []
-        options = self.some((0.15, "--keep=", self.length), (0.1, "--graze-tolerance=", self.length))
+        options = self.some((0.15, "--min-gap=", self.length), (0.1, "--graze-tolerance=", self.length))
         return [*self.sides(0.0), *self.way(), *solver, *options, *self.some((0.1, "--hull")), *self.asked()]
 
     def clearance(self) -> list[str]:
@@ -150,7 +150,7 @@ class Lines:
         of_parts = self.some((0.3, "--tolerance=", self.length), (0.25, "--ignore-start-overlaps"))
         sides = self.sides(0.6)
         options = of_parts if "--from" in sides or self.one_in(20) else []
-        return [*sides, *self.way(), *options, *self.some((0.1, "--keep=", self.length)), *self.asked()]
+        return [*sides, *self.way(), *options, *self.some((0.1, "--min-gap=", self.length)), *self.asked()]
 
     def motion(self) -> list[str]:
         angle = self.random.choice(["90", "10", "-200", self.number()])
@@ -162,7 +162,7 @@ class Lines:
             [f"--to={self.pose()}"],
             ["--through", "poses.json"],
         ]
-        options = self.some((0.1, "--keep=", self.length), (0.15, "--clearance"), (0.1, "--tolerance=0.1"))
+        options = self.some((0.1, "--min-gap=", self.length), (0.15, "--clearance"), (0.1, "--tolerance=0.1"))
         places = self.some((0.7, "--fixed-pose=", self.pose), *self.outputs())
         return [*self.sides(0.2), *self.random.choice(moves), *options, *places]
 
@@ -170,7 +170,7 @@ class Lines:
         pairs = self.random.choice(["base,wire", "tool,wire", "a", "fore,tool"])
         return [
             *("data/cube.off" if self.one_in(20) else "data/arm.urdf", "data/arm.csv"),
-            *self.some((0.7, "data/wire.obj"), (0.2, "data/cube.off"), (0.2, "--keep=", self.length)),
+            *self.some((0.7, "data/wire.obj"), (0.2, "data/cube.off"), (0.2, "--min-gap=", self.length)),
             *self.some((0.2, "--ignore", pairs), (0.1, "--hull", "*"), (0.1, "--strict")),
             *self.some((0.1, "--scene-scale=0.5"), *self.outputs()[:2]),
         ]

@@ -112,7 +112,7 @@ def test_invalid_rows_of_solids_become_errors() -> None:
     asked: dict[str, Any] = {"moving_pose": starts, "moving_index": index}
     columns = clearance_many(bodies, PLATE, directions, **asked)
     gaps = [np.nan, *[0.0] * 7]
-    assert 0 in clearance_many(bodies, PLATE, directions, **asked, keep=gaps).errors
+    assert 0 in clearance_many(bodies, PLATE, directions, **asked, min_gap=gaps).errors
     assert sorted(columns.errors) == [1, 2, 3, 4, 5, 6]
     assert columns.errors[4] == "moving: it was bent"
     assert columns.errors[5] == "moving: no body -1 among 3"

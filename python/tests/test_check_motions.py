@@ -15,7 +15,7 @@ from test_check import MOTION, always, changed, check, proof, refused, value_at,
 
 #: The fields of the moving and the fixed body.
 MOVERS = ("placement", "motions", 0)
-KEEP = ("query", "motions", 0, "keep")
+KEEP = ("query", "motions", 0, "min_gap")
 
 ALL = ["contact", "free", "kept", "through", "alone", "sinking"]
 
@@ -132,8 +132,8 @@ def test_other_bodies_are_refused() -> None:
             body["vertices"] = [[factor * x for x in v] for v in body["vertices"]]
             assert refused(larger)
     assert refused(changed(file, ("bodies",), lambda bodies: bodies[::-1]))
-    for keep in (0.01, -0.01, "0", None):
-        assert refused(changed(file, KEEP, always(keep)))
+    for min_gap in (0.01, -0.01, "0", None):
+        assert refused(changed(file, KEEP, always(min_gap)))
     assert refused(changed(file, (*KEEP[:-1], "tolerance"), always(0.0)))
     assert refused(changed(proof("motion_kept"), KEEP, always(0.26)))
     assert refused(changed(proof("motion_sinking"), KEEP, always(-0.0009)))

@@ -161,7 +161,7 @@ def test_the_pairs_of_a_statement_are_those_of_the_covers() -> None:
         ((*ROBOT, "frames", 1, "parent"), lambda k: 1),
         ((*LINKS, -1, "pose", "translation", 0), lambda x: x + 0.01),
         ((*LINKS, -1, "frame"), lambda k: 0),
-        ((*QUERY, "keep"), lambda x: -1.0),
+        ((*QUERY, "min_gap"), lambda x: -1.0),
     ],
 )
 def test_changing_any_number_of_a_path_is_refused(

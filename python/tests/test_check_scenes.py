@@ -79,7 +79,7 @@ def test_unknown_options_are_refused() -> None:
         {"graze_tolerance": -1.0},
         {"tolerance": -1.0},
         {"tolerance": ""},
-        {"keep": -1.0},
+        {"min_gap": -1.0},
         {"more": 1.0},
     ):
         assert refused(scene(statement, 3.0, **choices)), choices
@@ -98,4 +98,4 @@ def test_an_obstacle_ahead_is_not_behind() -> None:
     }
     passed = [[0, {"convex": {"free": {"behind": {"certificate": certificate}}}}]]
     claim = {"direction": [1.0, 0.0, 0.0], "lower": None, "stop": None, "passed": passed}
-    assert refused(scene({"scene_clearance": claim}, 1.5, keep=10.0))
+    assert refused(scene({"scene_clearance": claim}, 1.5, min_gap=10.0))

@@ -80,8 +80,8 @@ def test_a_changed_entry_of_a_cover_is_refused(name: str) -> None:
         ((*QUERY, "tolerance"), lambda x: 0.25),
         ((*SOLIDS, "spans", 0, "cover"), list),
         ((*SOLIDS, "spans", 0, "cover"), lambda of: [of[:1] + of[1:]]),
-        ((*QUERY, "keep"), lambda x: 0.5),
-        ((*QUERY, "keep"), lambda x: -0.5),
+        ((*QUERY, "min_gap"), lambda x: 0.5),
+        ((*QUERY, "min_gap"), lambda x: -0.5),
     ],
 )
 def test_changing_any_number_is_refused(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
@@ -162,6 +162,6 @@ def test_a_point_of_a_facet_has_to_be_inside_the_other_solid() -> None:
     time = value_at(file, SOLIDS)["meeting"]["time"]
     for off in (-1e-9, -0.1):
         assert refused(changed(file, (*SOLIDS, "meeting", "time"), always(time + off)))
-    assert refused(changed(file, (*QUERY, "keep"), always(0.5)))
+    assert refused(changed(file, (*QUERY, "min_gap"), always(0.5)))
     open_ = changed(file, ("bodies", 1, "pieces", 0), lambda piece: {**piece, "open": True})
     assert refused(open_)

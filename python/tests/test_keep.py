@@ -34,32 +34,32 @@ DOWN = [0.0, 0, -1]
 
 
 def test_a_cast_with_a_gap_stops_at_the_gap() -> None:
-    query = Cast(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=0.25)
-    assert query.keep == 0.25
+    query = Cast(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=0.25)
+    assert query.min_gap == 0.25
     found: Any = query.first_contact()
     assert found.certificate.lower <= 2.75 <= found.certificate.upper
     assert found.certificate.verify() < 1e-12
-    assert found.to_dict()["keep"] == 0.25
-    both: Any = contact_range(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=0.25)
+    assert found.to_dict()["min_gap"] == 0.25
+    both: Any = contact_range(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=0.25)
     assert both.interval == (2.75, 5.25)
-    assert bool(intersects(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=3.5))
-    tracked: Any = Tracker().clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=0.25)
+    assert bool(intersects(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=3.5))
+    tracked: Any = Tracker().clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=0.25)
     assert tracked.distance == pytest.approx(2.75)
-    assert clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=3.5).distance is None
+    assert clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=3.5).distance is None
     for again in (copy.copy(query), pickle.loads(pickle.dumps(query))):
-        assert again.keep == 0.25
+        assert again.min_gap == 0.25
         same: Any = again.first_contact()
         assert same.translation == 2.75
-    for answer in (found, both, clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=3.5)):
+    for answer in (found, both, clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=3.5)):
         text = answer.proof_json()
         report = check.check(text)
         assert report.holds and not report.partly
-        gap = f'"keep":{answer.query.keep!r}'
-        for other in (answer.query.keep - 1e-9, answer.query.keep + 1e-9):
+        gap = f'"min_gap":{answer.query.min_gap!r}'
+        for other in (answer.query.min_gap - 1e-9, answer.query.min_gap + 1e-9):
             with pytest.raises(check.RefusedError):
-                check.check(text.replace(gap, f'"keep":{other!r}'))
+                check.check(text.replace(gap, f'"min_gap":{other!r}'))
     with pytest.raises(check.NoProofError, match="negative"):
-        check.check(found.proof_json().replace('"keep":0.25', '"keep":-0.25'))
+        check.check(found.proof_json().replace('"min_gap":0.25', '"min_gap":-0.25'))
 
 
 def test_solids_stop_at_the_gap() -> None:
@@ -69,17 +69,17 @@ def test_solids_stop_at_the_gap() -> None:
     pairs: list[tuple[Any, Any]] = [(CUBE, plate), (Solid.from_pieces([CUBE]), CUBE)]
     for moving, fixed in pairs:
         touching = far(moving, fixed, DOWN, moving_pose=[5, 0, 9], tolerance=0)
-        kept = far(moving, fixed, DOWN, moving_pose=[5, 0, 9], tolerance=0, keep=0.5)
+        kept = far(moving, fixed, DOWN, moving_pose=[5, 0, 9], tolerance=0, min_gap=0.5)
         if isinstance(touching, SolidBlocked):
             assert kept.distance == pytest.approx(touching.distance - 0.5, abs=1e-10)
-        query = SolidCast(moving, fixed, DOWN, moving_pose=[5, 0, 9], tolerance=0, keep=0.5)
+        query = SolidCast(moving, fixed, DOWN, moving_pose=[5, 0, 9], tolerance=0, min_gap=0.5)
         again = pickle.loads(pickle.dumps(query))
-        assert (query.keep, again.keep) == (0.5, 0.5)
+        assert (query.min_gap, again.min_gap) == (0.5, 0.5)
         answer, proof = again.certified_clearance()
         assert repr(answer) == repr(kept)
         query.verify(proof)
         with pytest.raises(QueryError, match="asked by `within`"):
-            meets(moving, fixed, DOWN, keep=0.5)
+            meets(moving, fixed, DOWN, min_gap=0.5)
 
 
 @pytest.mark.parametrize("gap", [-1.0, math.nan, math.inf, 1e70])
@@ -90,14 +90,14 @@ def test_invalid_gaps_are_refused(gap: float) -> None:
     for moving in (CUBE, solid):
         far: Any = clearance
         with pytest.raises(QueryError, match="gap"):
-            far(moving, CUBE, DOWN, keep=gap)
+            far(moving, CUBE, DOWN, min_gap=gap)
     with pytest.raises(QueryError, match="gap"):
-        cast(CUBE, CUBE, DOWN, keep=gap)
+        cast(CUBE, CUBE, DOWN, min_gap=gap)
     with pytest.raises(QueryError, match="gap"):
-        SolidCast(solid, CUBE, DOWN, keep=gap)
+        SolidCast(solid, CUBE, DOWN, min_gap=gap)
     with pytest.raises(QueryError, match="gap"):
-        obstacles.clearance(CUBE, DOWN, keep=gap)
-    columns = cast_many(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=[gap, 0.0])
+        obstacles.clearance(CUBE, DOWN, min_gap=gap)
+    columns = cast_many(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=[gap, 0.0])
     assert (list(columns.errors), columns.translation[1]) == ([0], 3)
     assert "gap" in columns.errors[0]
 
@@ -112,16 +112,16 @@ def test_rows_with_gaps_equal_single_answers_and_the_command_line(batch: Batch) 
         "moving_index": settings.moving,
         "fixed_index": settings.fixed,
     }
-    told = batch(settings.lines(query="clearance", keep=0.125))
-    columns = clearance_many(*sides, **where, keep=0.125)
-    spans = contact_range_many(*sides, **where, keep=np.full(len(settings), 0.125))
+    told = batch(settings.lines(query="clearance", min_gap=0.125))
+    columns = clearance_many(*sides, **where, min_gap=0.125)
+    spans = contact_range_many(*sides, **where, min_gap=np.full(len(settings), 0.125))
     for i, line in enumerate(told):
         answer: Any = columns[i]
         assert columns.outcome[i] == line["outcome"]
         if line["outcome"] == "blocked":
             assert columns.distance[i] == line["distance"]
             assert answer.to_dict()["translation_bounds"] == line["translation_bounds"]
-            assert answer.query.keep == 0.125
+            assert answer.query.min_gap == 0.125
             assert spans.translation[i] == line["translation"]
         report = check.check(answer.proof_json())
         assert report.holds and not report.partly
@@ -133,13 +133,13 @@ def test_scene_queries_stop_at_the_gap() -> None:
     obstacles.add_many(CUBE, [[2 * k, 0, 0] for k in range(50)])
     obstacles.add(Solid.from_pieces([CUBE]), [200, 0, 0])
     for x in (24.25, 200.25):
-        found = obstacles.clearance(CUBE, DOWN, [x, 0, 4], keep=0.5)
+        found = obstacles.clearance(CUBE, DOWN, [x, 0, 4], min_gap=0.5)
         assert found.distance == pytest.approx(2.5, abs=1e-10)
     # Between two of them, half a unit from each.
     aside = [25.0 - 0.2, 1.4, 4]
     assert obstacles.clearance(CUBE, DOWN, aside).outcome == "free"
-    assert obstacles.clearance(CUBE, DOWN, aside, keep=0.5).outcome == "blocked"
-    many = obstacles.clearance_many(CUBE, DOWN, [[24.25, 0, 4], aside], keep=0.5)
+    assert obstacles.clearance(CUBE, DOWN, aside, min_gap=0.5).outcome == "blocked"
+    many = obstacles.clearance_many(CUBE, DOWN, [[24.25, 0, 4], aside], min_gap=0.5)
     assert many["outcome"].tolist() == [0, 0]
-    alone = obstacles.clearance(CUBE, DOWN, aside, keep=0.5)
+    alone = obstacles.clearance(CUBE, DOWN, aside, min_gap=0.5)
     assert many["distance"][1] == alone.distance

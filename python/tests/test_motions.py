@@ -68,14 +68,14 @@ def lines(numbers: dict[str, Any], places: Any, **more: Any) -> list[dict[str, A
     ]
 
 
-@pytest.mark.parametrize("keep", [0.0, 0.25])
-def test_rows_have_the_bits_of_the_command_line(batch: Batch, keep: float) -> None:
+@pytest.mark.parametrize("min_gap", [0.0, 0.25])
+def test_rows_have_the_bits_of_the_command_line(batch: Batch, min_gap: float) -> None:
     n = 120
     numbers, places = screws(3, n), np.random.default_rng(4).normal(size=(n, 3)) * 4
     cloud = ConvexPolyhedron(np.asarray(CLOUD.vertices))
     cube = ConvexPolyhedron(CUBE.vertices)
-    there = batch(lines(numbers, places, **({"keep": keep} if keep else {})))
-    columns = motion_many(cube, cloud, {"screw": numbers}, moving_pose=places, keep=keep, threads=3)
+    there = batch(lines(numbers, places, **({"min_gap": min_gap} if min_gap else {})))
+    columns = motion_many(cube, cloud, {"screw": numbers}, moving_pose=places, min_gap=min_gap, threads=3)
     assert len(columns) == n and not columns.errors
     for i, answer in enumerate(there):
         answer = {k: v for k, v in answer.items() if k not in ("id", "notes")}
@@ -97,7 +97,7 @@ def answers() -> list[FirstContact]:
     turn = Motion.turn([0, 0, 0], [0, 0, 1], radians=3, pose=[2, 0, 0])
     found = [
         first_contact(CUBE, CUBE, turn, Pose([-1.5, 1.5, 0.25])),
-        first_contact(CUBE, CUBE, turn, Pose([-1.5, 1.5, 0.25]), keep=0.25),
+        first_contact(CUBE, CUBE, turn, Pose([-1.5, 1.5, 0.25]), min_gap=0.25),
         first_contact(CUBE, CUBE, turn, Motion.slide([0, 0, 5], pose=[-1.5, 1.5, 0.25])),
         first_contact(CUBE, CUBE, Motion.slide([1, 0, 0])),
         first_contact(
@@ -129,7 +129,7 @@ def test_answers_give_times_points_and_normals() -> None:
     match contact:
         case FirstContact("contact", lower, upper):
             assert upper is not None and lower < upper < lower + 1e-11
-    assert kept.lower < contact.lower and kept.query.keep == 0.25
+    assert kept.lower < contact.lower and kept.query.min_gap == 0.25
     assert contact.poses is not None and contact.features is not None
     assert contact.poses[0] == contact.query.moving_motion.at(contact.lower)
     assert contact.point is not None and contact.normal is not None and contact.looks > 3
@@ -185,8 +185,8 @@ def test_random_proofs_hold_in_fractions() -> None:
             Motion.through([pose, random.normal(size=3) * 4, pose]),
         ][k % 5]
         other = Motion.turn(point * 3, way, radians=angle / 3) if k % 3 == 0 else None
-        keep = [0.0, 0.0, 1e-9, 0.25][k % 4]
-        found = first_contact(bodies[0], bodies[1], motion, other, keep=keep)
+        min_gap = [0.0, 0.0, 1e-9, 0.25][k % 4]
+        found = first_contact(bodies[0], bodies[1], motion, other, min_gap=min_gap)
         report = check.check(found.proof_json())
         assert report.holds or found.lower == 0
         seen[found.outcome] = seen.get(found.outcome, 0) + 1
@@ -226,7 +226,7 @@ def test_a_query_is_saved_and_replayed(cli: Path, tmp_path: Path) -> None:
     assert json.loads(told.stdout) == query.first_contact().to_dict()
     again = MotionCast.from_json(query.to_json())
     assert again.first_contact().to_dict() == query.first_contact().to_dict()
-    assert again.keep == 0.25 and again.to_json() == query.to_json()
+    assert again.min_gap == 0.25 and again.to_json() == query.to_json()
     with pytest.raises(CaseError, match="has no file"):
         answers()[-1].query.to_json()
     with pytest.raises(CaseError, match="the format is"):
@@ -245,10 +245,10 @@ def test_invalid_arguments_are_refused() -> None:
     with pytest.raises(InputError, match="by"):
         Motion.slide([1, 2])
     slide = Motion.slide([1, 0, 0])
-    with pytest.raises(QueryError, match="either keep or tolerance"):
-        first_contact(CUBE, CUBE, slide, keep=1, tolerance=1)
+    with pytest.raises(QueryError, match="either min_gap or tolerance"):
+        first_contact(CUBE, CUBE, slide, min_gap=1, tolerance=1)
     with pytest.raises(QueryError, match="-1"):
-        first_contact(CUBE, CUBE, slide, keep=-1)
+        first_contact(CUBE, CUBE, slide, min_gap=-1)
     with pytest.raises(TypeError, match="neither a ConvexPolyhedron nor a Solid"):
         first_contact("cube", CUBE, slide)  # type: ignore[arg-type]
     turn: dict[str, Any] = {"point": [0, 0, 0], "axis": [0, 0, 1], "radians": [1, 2]}
@@ -261,7 +261,7 @@ def test_invalid_arguments_are_refused() -> None:
     with pytest.raises(InputError, match="axis has 3 rows, moving_motion.radians has 2 rows"):
         motion_many(CUBE, CUBE, {"turn": {**turn, "axis": np.eye(3)}})
     with pytest.raises(InputError, match="different lengths"):
-        motion_many(CUBE, CUBE, {"turn": turn}, keep=[1, 2, 3])
+        motion_many(CUBE, CUBE, {"turn": turn}, min_gap=[1, 2, 3])
     with pytest.raises(InputError, match="its own pose"):
         motion_many(CUBE, CUBE, slide, moving_pose=[1, 0, 0])
     with pytest.raises(TypeError, match="neither a Motion"):
@@ -288,7 +288,7 @@ def test_rows_of_different_motions_equal_single_answers() -> None:
     turn = {"turn": {"point": [0, 0, 0], "axis": [0, 0, 1], "radians": [1, 2]}}
     more = motion_many(CUBE, CUBE, turn, fixed_pose=[0, 0, -1], tolerance=[1e-9, 1e-6])
     assert more.counts() == {"free": 2}
-    wrong = motion_many(CUBE, CUBE, turn, fixed_pose=[0, 0, -1], tolerance=[1e-9, 1e-6], keep=1)
+    wrong = motion_many(CUBE, CUBE, turn, fixed_pose=[0, 0, -1], tolerance=[1e-9, 1e-6], min_gap=1)
     assert wrong.counts() == {"error": 2} and "either" in wrong.errors[0]
     mixed = motion_many([BOLT, CUBE], PLATE, turn, moving_pose=[0, 0, 30])
     assert mixed.counts() == {"free": 2}
@@ -357,7 +357,7 @@ def cleared() -> list[MotionClearance]:
         motion_clearance(CUBE, TABLE, Motion.turn([0.5, 0.5, 0], [0, 0, 1], radians=2)),
         motion_clearance(CUBE, TABLE, Motion.slide([0, 0, -2])),
         motion_clearance(CUBE, TABLE, Motion.slide([0, 0, -2], pose=[0, 0, 1]), tolerance=0.01),
-        motion_clearance(CUBE, TABLE, Motion.slide([0, 0, -2], pose=[0, 0, 1]), keep=0.25),
+        motion_clearance(CUBE, TABLE, Motion.slide([0, 0, -2], pose=[0, 0, 1]), min_gap=0.25),
         motion_clearance(CUBE, TABLE, out),
         motion_clearance(CUBE, solid, Motion.slide([0, 0, -2], pose=[0, 0, 1])),
         motion_clearance(CUBE, solid, out),

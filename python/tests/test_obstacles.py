@@ -70,7 +70,7 @@ def test_answers_save_their_proofs(cli: Path, tmp_path: Path) -> None:
         "none is nearer": obstacles.nearest(CUBE, where),
         "farther": obstacles.within(CUBE, 20, where),
         "none stops": obstacles.clearance(CUBE, DOWN, where),
-        "0.25 away or nearer": obstacles.clearance(CUBE, DOWN, where, keep=0.25),
+        "0.25 away or nearer": obstacles.clearance(CUBE, DOWN, where, min_gap=0.25),
         "none ever": obstacles.clearance(CUBE, [0, 0, 1], where, ignore=[ball]),
     }
     for said, answer in answers.items():

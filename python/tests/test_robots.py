@@ -124,7 +124,7 @@ def test_gaps_are_kept_and_pairs_ignored() -> None:
     assert (free.outcome, free.upper, free.lower, free.pair) == ("free", None, 2, None)
     free.verify()
     assert ARM.first_contact(ROWS).outcome != "contact"
-    near = ARM.first_contact(ROWS, scene, keep=0.02)
+    near = ARM.first_contact(ROWS, scene, min_gap=0.02)
     assert near.lower < ARM.first_contact(ROWS, scene).lower
     near.verify()
     # A non-convex frame around the position of the wire.
@@ -165,7 +165,7 @@ def test_invalid_arguments_are_refused(tmp_path: Path) -> None:
     refused(InputError, r"path: the path has \d+ rows and 2 times; give", ROWS, times=[0, 1])
     refused(InputError, "path: joint hand is not an independent joint", ROWS, joints={"hand": 1.0})
     refused(InputError, "ignore: unknown name hand; known names: base", ROWS, ignore=[("tool", "hand")])
-    refused(QueryError, "gap", ROWS, keep=-1.0)
+    refused(QueryError, "gap", ROWS, min_gap=-1.0)
     refused(
         QueryError,
         "row 0: invalid value NaN of joint shoulder",
@@ -212,6 +212,6 @@ def test_many_paths_equal_single_paths() -> None:
 
 def test_the_proof_file_matches_the_schema() -> None:
     for path, scene in ((ROWS, {"wire": WIRE}), (ROWS, {}), (ROWS[:1], {"wire": WIRE})):
-        saved = json.loads(ARM.first_contact(path, scene, keep=0.001).proof_json())
+        saved = json.loads(ARM.first_contact(path, scene, min_gap=0.001).proof_json())
         assert list(saved["statement"]) == ["path"]
         conform("proof", saved)

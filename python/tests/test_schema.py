@@ -112,7 +112,7 @@ SCENE = ["--among", "plate.off", "scene.jsonl", "--moving-pose"]
         ["clearance", "dodecahedron.off", *SCENE, "24.25,0,4", "--direction", "-z"],
         ["clearance", "dodecahedron.off", *SCENE, "24.25,0,4", "--direction", "z"],
         ["clearance", "dodecahedron.off", *SCENE, "24.25,0,0", "--direction", "z"],
-        ["clearance", "bolt.stl", *SCENE, "0,0,9", "--direction", "-z", "--keep", "0.25"],
+        ["clearance", "bolt.stl", *SCENE, "0,0,9", "--direction", "-z", "--min-gap", "0.25"],
     ],
 )
 def test_one_body_among_many(cli: Path, tmp_path: Path, words: list[str]) -> None:

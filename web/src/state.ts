@@ -40,7 +40,7 @@ export interface State {
     /** The body that moves; the other one rests. */
     body: Slot;
     /** A minimum gap. */
-    keep: number;
+    minGap: number;
     /** The time from 0 to 1 at which the moving body is shown. */
     time: number;
   };
@@ -74,7 +74,7 @@ export function fromExample(name: string): State {
     near: false,
     t: null,
     tab: "answer",
-    motion: { screw: null, body: "moving", keep: 0, time: 0 },
+    motion: { screw: null, body: "moving", minGap: 0, time: 0 },
     assembly: { direction: [0, 0, 1], tolerance: null, ignore: false, part: null },
   };
 }
@@ -107,11 +107,11 @@ export function toHash(state: State): string {
   return `#${given.map(([key, value]) => `${key}=${encodeURIComponent(value).replace(/%(2C|3A|2F)/g, decodeURIComponent)}`).join("&")}`;
 }
 
-function motionFields({ motion: { screw, body, keep, time } }: State): [string, string | undefined][] {
+function motionFields({ motion: { screw, body, minGap, time } }: State): [string, string | undefined][] {
   return [
     ["screw", screw ? [screw.point, screw.axis, screw.angle, screw.rise].join() : undefined],
     ["moves", body === "fixed" ? body : undefined],
-    ["keep", keep ? String(keep) : undefined],
+    ["gap", minGap ? String(minGap) : undefined],
     ["time", time ? String(time) : undefined],
   ];
 }
@@ -157,7 +157,7 @@ export function fromHash(hash: string): State {
   const [x, y, z, a, b, c, angle, rise] = numbers("screw", 8) ?? [];
   if (rise !== undefined) motion.screw = { point: [x!, y!, z!], axis: [a!, b!, c!], angle: angle!, rise };
   if (fields.get("moves") === "fixed") motion.body = "fixed";
-  motion.keep = Math.max(0, numbers("keep", 1)?.[0] ?? 0);
+  motion.minGap = Math.max(0, numbers("gap", 1)?.[0] ?? 0);
   motion.time = Math.min(1, Math.max(0, numbers("time", 1)?.[0] ?? 0));
   assembly.direction = (numbers("ad", 3) as Vec) ?? assembly.direction;
   assembly.tolerance = numbers("atol", 1)?.[0] ?? null;

@@ -100,7 +100,7 @@ export class Turning {
         h("div", { class: "fields", style: "grid-template-columns: 1fr 1fr" },
           this.angle, this.rise),
         h("div", { class: "fields", style: "grid-template-columns: 1fr 1fr; align-items: end" },
-          h("label", {}, "Minimum gap", this.number("Minimum gap", (_, { motion }) => motion.keep, (_, x, { motion }) => (motion.keep = Math.max(0, x)))),
+          h("label", {}, "Minimum gap", this.number("Minimum gap", (_, { motion }) => motion.minGap, (_, x, { motion }) => (motion.minGap = Math.max(0, x)))),
           h("label", { title: "Depth by which convex bodies may overlap. Both solids are shrunk by half of it; the default follows from the files" }, "Tolerance (may be empty)",
             this.number("Tolerance of motions", (_, { tolerance }) => tolerance, (_, x, state) => (state.tolerance = Math.max(0, x)), (state) => (state.tolerance = null)))),
         h("small", { style: "color: var(--soft)" }, "In the view drag the axis, its tip, the end of the way, or the rise. Positive angles turn counter-clockwise as seen against the axis.")),
@@ -155,7 +155,7 @@ export class Turning {
     this.fitted = true;
     await this.around.begin(example.pair, (state) => {
       state.poses = { moving, fixed };
-      state.motion = { screw, body: "moving", keep: 0, time: 0 };
+      state.motion = { screw, body: "moving", minGap: 0, time: 0 };
     });
     this.examples.value = name;
   }
@@ -204,9 +204,9 @@ export class Turning {
 
   private question(state: State, { point, axis, angle, rise }: Screw) {
     const turn = { point, axis, angle: angle * RADIANS };
-    const { poses, tolerance, motion: { body, keep } } = state;
+    const { poses, tolerance, motion: { body, minGap } } = state;
     const motion = rise ? { screw: { ...turn, rise } } : { turn };
-    return { moving_pose: poses.moving, fixed_pose: poses.fixed, [`${body}_motion`]: motion, keep, tolerance };
+    return { moving_pose: poses.moving, fixed_pose: poses.fixed, [`${body}_motion`]: motion, min_gap: minGap, tolerance };
   }
 
   /** Sends a question. One is pending at a time; then the current question is sent. */
@@ -259,7 +259,7 @@ export class Turning {
     const missing = !this.bodies();
     const said = error || missing
       ? { kind: "care", headline: "No answer", sentence: error ?? "A body is missing.", rows: [] as [string, string][] }
-      : answer && screw ? say(answer, screw, state.motion.keep)
+      : answer && screw ? say(answer, screw, state.motion.minGap)
       : { kind: "", headline: "…", sentence: "Reading.", rows: [] as [string, string][] };
     this.said.className = `said ${said.kind}`;
     refill(this.said, h("h2", {}, said.headline), h("p", {}, said.sentence), answer && h("p", { class: "took" }, `${took < 0.1 ? "less than 0.1" : Number(took.toPrecision(2))} ms in this browser`));

@@ -33,13 +33,13 @@ test("command asks the same question, or there is none", () => {
 });
 
 test("motion is restored from its address and its command", () => {
-  const state = fromHash("#example=bracket&tab=motion&screw=1,2e-7,-3,0,-1,0.1,-120.5,4&keep=0.25&time=0.5&fp=0,0,1,0,0,0,1&tol=1e-3");
-  assert.deepEqual(state.motion, { screw: { point: [1, 2e-7, -3], axis: [0, -1, 0.1], angle: -120.5, rise: 4 }, body: "moving", keep: 0.25, time: 0.5 });
+  const state = fromHash("#example=bracket&tab=motion&screw=1,2e-7,-3,0,-1,0.1,-120.5,4&gap=0.25&time=0.5&fp=0,0,1,0,0,0,1&tol=1e-3");
+  assert.deepEqual(state.motion, { screw: { point: [1, 2e-7, -3], axis: [0, -1, 0.1], angle: -120.5, rise: 4 }, body: "moving", minGap: 0.25, time: 0.5 });
   assert.deepEqual(fromHash(toHash(state)), state);
-  const asked = "colltrans motion dodecahedron.off bracket.obj --screw 1,2e-7,-3 0,-1,0.1 -120.5 4 --moving-pose=6,1,9,0.2,0.3,0.1,0.9273618495495703 --fixed-pose=0,0,1,0,0,0,1 --keep=0.25 --tolerance=0.001";
+  const asked = "colltrans motion dodecahedron.off bracket.obj --screw 1,2e-7,-3 0,-1,0.1 -120.5 4 --moving-pose=6,1,9,0.2,0.3,0.1,0.9273618495495703 --fixed-pose=0,0,1,0,0,0,1 --min-gap=0.25 --tolerance=0.001";
   assert.equal(turningCommand(state, state.motion.screw), asked);
   assert.match(turningCommand(fromHash("#m=x.off:hull&f=y.stl:open"), { point: [0, 0, 0], axis: [0, 0, 1], angle: 9, rise: 0 }), / --turn 0,0,0 0,0,1 9 .*--hull-moving .*--open$/);
-  for (const wrong of ["#screw=1,2,3", "#screw=1,2,3,4,5,6,7,x", "#keep=-1&time=-3"]) assert.deepEqual(fromHash(wrong), fromExample("bracket"));
+  for (const wrong of ["#screw=1,2,3", "#screw=1,2,3,4,5,6,7,x", "#gap=-1&time=-3"]) assert.deepEqual(fromHash(wrong), fromExample("bracket"));
 });
 
 test("and as programs", () => {

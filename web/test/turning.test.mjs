@@ -236,7 +236,7 @@ test("motion answers equal native answers and match the schema", async () => {
       const at = () => [far * random(), far * random(), far * random()];
       const axis = { point: at(), axis: [random(), random(), random()], angle: 3 * random() };
       const motion = k % 2 ? { turn: axis } : { screw: { ...axis, rise: far * random() } };
-      const asked = { [k % 4 ? "moving_motion" : "fixed_motion"]: motion, moving_pose: [...at(), ...turn()], fixed_pose: [0, 0, 0, ...turn()], keep: k % 5 ? 0 : 0.25 };
+      const asked = { [k % 4 ? "moving_motion" : "fixed_motion"]: motion, moving_pose: [...at(), ...turn()], fixed_pose: [0, 0, 0, ...turn()], minGap: k % 5 ? 0 : 0.25 };
       questions.push({ question: { do: "motion", ...asked } });
       if (k % 3 === 0) questions.push({ question: { do: "prove", ...asked } });
     }

@@ -52,7 +52,7 @@ pub enum ReadError {
          file",
         path.display()
     )]
-    Outside {
+    OutsideFolder {
         /// The source that has the reference.
         path: PathBuf,
         /// The reference as written in the source, or the path to which it leads.
@@ -72,7 +72,7 @@ pub enum ReadError {
          missing meshes",
         path.display(), missing.len(), missing[0]
     )]
-    Missing {
+    MissingMeshes {
         /// The file that has the references.
         path: PathBuf,
         /// The references as written in the file.

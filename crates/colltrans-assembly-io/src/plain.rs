@@ -1,7 +1,7 @@
 //! Rewrites error messages of the parsers of JSON and TOML in the terms of the file.
 
 /// Returns the message of a JSON error in the terms of the file, without line and column.
-pub fn plain(error: &serde_json::Error) -> String {
+pub fn json_error_reason(error: &serde_json::Error) -> String {
     let message = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     reword_parser_message(message.strip_suffix(&place).unwrap_or(&message))

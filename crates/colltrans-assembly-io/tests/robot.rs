@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use colltrans::motion::path::{Joint, JointPath, PathBody, PathCast, PathOutcome};
 use colltrans::{AnyBody, Pose};
 use colltrans_assembly_io::ReadError;
-use colltrans_assembly_io::read::{ReadOptions, disabled, robot};
-use colltrans_assembly_io::robot::{Kind, Robot, RobotError, Table, body_of};
+use colltrans_assembly_io::read::{ReadOptions, read_disabled_pairs, read_robot};
+use colltrans_assembly_io::robot::{JointKind, Robot, RobotError, Table, body_from_mesh};
 use colltrans_mesh::body::{BodyOptions, load};
 use glam::{DAffine3, DVec3};
 
@@ -17,7 +17,7 @@ fn data_path(name: &str) -> PathBuf {
 }
 
 fn read_arm() -> Robot {
-    robot(data_path("arm.urdf"), &ReadOptions::default()).expect("a robot")
+    read_robot(data_path("arm.urdf"), &ReadOptions::default()).expect("a robot")
 }
 
 /// Reads a robot from the elements in a text.
@@ -25,7 +25,7 @@ fn read_text(text: &str) -> Result<Robot, ReadError> {
     let folder = TemporaryFolder::new();
     let file = folder.path().join("robot.urdf");
     std::fs::write(&file, format!("<robot name=\"r\">{text}</robot>")).unwrap();
-    robot(&file, &ReadOptions::default())
+    read_robot(&file, &ReadOptions::default())
 }
 
 /// Returns a link with a cube.
@@ -52,9 +52,9 @@ fn links_and_joints_match_the_file() {
     assert_eq!(
         joints,
         [
-            ("shoulder", Kind::Revolute, Some([-3.0, 3.0])),
-            ("elbow", Kind::Continuous, None),
-            ("reach", Kind::Prismatic, Some([0.0, 0.1])),
+            ("shoulder", JointKind::Revolute, Some([-3.0, 3.0])),
+            ("elbow", JointKind::Continuous, None),
+            ("reach", JointKind::Prismatic, Some([0.0, 0.1])),
         ]
     );
     let frames = arm.mechanism().frames();
@@ -72,17 +72,17 @@ fn frames_match_link_poses_of_the_assembly_reader() {
     let joints: BTreeMap<String, f64> = values.map(|(name, x)| (name.to_owned(), x)).into();
     let options = ReadOptions::default().with_joints(joints);
     let parts = colltrans_assembly_io::read::read(data_path("arm.urdf"), &options).expect("parts");
-    let path = JointPath::evenly(vec![values.map(|(_, x)| x).to_vec()]).expect("a path");
+    let path = JointPath::at_unit_times(vec![values.map(|(_, x)| x).to_vec()]).expect("a path");
     let bodies = arm.links().iter().flat_map(|link| {
         let body =
             move |body| PathBody { frame: link.frame, placed: AnyBody::at(body, Pose::IDENTITY) };
         link.bodies.iter().map(body)
     });
     let cast = PathCast::new(arm.mechanism(), &path, bodies.collect(), vec![]).expect("a cast");
-    let start = colltrans::motion::path::Place { row: 0, share: 0.0 };
+    let start = colltrans::motion::path::PathPlace { row: 0, share: 0.0 };
     for (k, part) in parts.parts().iter().enumerate() {
         let AnyBody::Convex(body) = &arm.links()[k].bodies[0] else { panic!("not convex") };
-        let pose = cast.pose(k, start);
+        let pose = cast.world_pose(k, start);
         let place = DAffine3::from_mat3_translation(pose.matrix(), pose.translation());
         for v in body.vertices() {
             let at = place.transform_point3(*v);
@@ -100,7 +100,7 @@ fn rows_are_assigned_by_name_or_by_order() {
     let arm = read_arm();
     let none = BTreeMap::new();
     let path = |text: &str, rest: &BTreeMap<String, f64>| {
-        arm.path(&Table::parse(text).expect("a table"), rest)
+        arm.joint_path(&Table::parse(text).expect("a table"), rest)
     };
     let (by_order, notes) = path("0.1,0.2,0.05\n0.3,0.4,0.05\n", &none).expect("a path");
     assert_eq!(by_order.rows(), [[0.1, 0.2, 0.05], [0.3, 0.4, 0.05]]);
@@ -145,7 +145,7 @@ fn mimic_joints_follow_and_cycles_are_rejected() {
     );
     let hand = hand.expect("a hand");
     let table = Table::parse("0.25\n0.5\n").expect("rows");
-    let (path, _) = hand.path(&table, &BTreeMap::new()).expect("a path");
+    let (path, _) = hand.joint_path(&table, &BTreeMap::new()).expect("a path");
     assert_eq!(path.rows(), [[0.25, 0.0], [0.5, -0.5]]);
     let ring = |of: &str| format!("<mimic joint=\"{of}\"/>");
     let ring = read_text(
@@ -160,26 +160,26 @@ fn mimic_joints_follow_and_cycles_are_rejected() {
 fn pairs_exclude_neighbours_or_srdf_pairs() {
     let arm = read_arm();
     // base, upper, fore, tool: a chain with one joint between neighbours.
-    assert_eq!(arm.pairs(None).expect("pairs"), [[0, 2], [0, 3], [1, 3]]);
+    assert_eq!(arm.checked_pairs(None).expect("pairs"), [[0, 2], [0, 3], [1, 3]]);
     let folder = TemporaryFolder::new();
     let file = folder.path().join("arm.srdf");
     let text = "<robot name=\"arm\"><disable_collisions link1=\"tool\" link2=\"base\" reason=\"Never\"/>\
                 <disable_collisions link1=\"base\" link2=\"upper\"/></robot>";
     std::fs::write(&file, text).unwrap();
-    let listed = disabled(&file).expect("a list");
-    assert_eq!(arm.pairs(Some(&listed)).expect("pairs"), [[0, 2], [1, 2], [1, 3], [2, 3]]);
+    let listed = read_disabled_pairs(&file).expect("a list");
+    assert_eq!(arm.checked_pairs(Some(&listed)).expect("pairs"), [[0, 2], [1, 2], [1, 3], [2, 3]]);
     let unknown = [["hand".to_owned(), "base".to_owned()]];
-    assert!(matches!(arm.pairs(Some(&unknown)), Err(RobotError::Unknown { .. })));
+    assert!(matches!(arm.checked_pairs(Some(&unknown)), Err(RobotError::Unknown { .. })));
     std::fs::write(&file, "<robot><disable_collisions link1=\"a\"/></robot>").unwrap();
-    let error_text = disabled(&file).unwrap_err().to_string();
+    let error_text = read_disabled_pairs(&file).unwrap_err().to_string();
     assert!(error_text.contains("<disable_collisions> has no attribute link2"), "{error_text}");
     // Links that a fixed joint connects never move relative to each other.
     let held = read_text(
         &(cube_link("a") + &cube_link("b") + &joint_element("j", "fixed", ["a", "b"], "")),
     )
     .expect("a robot");
-    assert_eq!(held.pairs(Some(&[])).expect("pairs"), Vec::<[usize; 2]>::new());
-    assert_eq!(held.moving_between(1, None), 0);
+    assert_eq!(held.checked_pairs(Some(&[])).expect("pairs"), Vec::<[usize; 2]>::new());
+    assert_eq!(held.joints_between(1, None), 0);
 }
 
 #[test]
@@ -210,9 +210,10 @@ fn path_cast_finds_wire_that_all_samples_miss() {
     let arm = read_arm();
     let table =
         Table::parse(&std::fs::read_to_string(data_path("arm.csv")).unwrap()).expect("rows");
-    let (path, _) = arm.path(&table, &BTreeMap::new()).expect("a path");
+    let (path, _) = arm.joint_path(&table, &BTreeMap::new()).expect("a path");
     let options = BodyOptions::default();
-    let wire = load(data_path("wire.obj"), &options, |mesh, options| body_of(&mesh, options));
+    let wire =
+        load(data_path("wire.obj"), &options, |mesh, options| body_from_mesh(&mesh, options));
     let wire = wire.expect("a wire").body;
     let first_contact_along = |path: &JointPath| {
         let bodies = arm.links().iter().flat_map(|link| {
@@ -231,7 +232,7 @@ fn path_cast_finds_wire_that_all_samples_miss() {
         for k in 0..=100 {
             let share = f64::from(k) / 100.0;
             let row = pair[0].iter().zip(&pair[1]).map(|(a, b)| a + (b - a) * share).collect();
-            let sample = first_contact_along(&JointPath::evenly(vec![row]).expect("a row"));
+            let sample = first_contact_along(&JointPath::at_unit_times(vec![row]).expect("a row"));
             assert!(matches!(sample, PathOutcome::Free(_)), "{sample:?}");
         }
     }

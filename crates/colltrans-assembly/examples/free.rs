@@ -6,10 +6,10 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use colltrans::free::{CellKind, FreeDirections, FreeOptions, Verdict};
+use colltrans::removal::directions::{CellKind, FreeDirections, FreeOptions, Verdict};
 use colltrans::solid::{StartOverlap, Workspace};
-use colltrans_assembly::free::Removal;
-use colltrans_assembly::rooms::room_of;
+use colltrans_assembly::free::RemovalPair;
+use colltrans_assembly::travel::travel_of_group;
 use colltrans_assembly::{Bodies, Fit, Part};
 use colltrans_assembly_io::read::{ReadOptions, read};
 use glam::DVec3;
@@ -47,11 +47,11 @@ fn main() -> Result<(), Failure> {
     for group in groups {
         let name = names[group[0]];
         let started = Instant::now();
-        match Removal::new(&bodies, &group) {
+        match RemovalPair::new(&bodies, &group) {
             Err(error) => println!("{name}: {error}"),
             Ok(removal) => {
                 let joined = started.elapsed().as_secs_f64();
-                let free = removal.directions(options, &AtomicBool::new(false))?;
+                let free = removal.free_directions(options, &AtomicBool::new(false))?;
                 let seconds = started.elapsed().as_secs_f64();
                 all += seconds;
                 print!("{name}: {seconds:.4} s ({joined:.4} joining), ");
@@ -80,7 +80,7 @@ fn print_summary(free: &FreeDirections) {
         "free/blocked/both/undecided cells {kinds:?}, {boxes:?} boxes inside, share free {low:.6e} (+{:.1e}), undecided {:.2e}, looks {}",
         high - low,
         free.undecided_area() / sphere,
-        free.work()[1]
+        free.work_counts()[1]
     );
 }
 
@@ -105,8 +105,8 @@ fn compare_with_casts(bodies: &Bodies, group: &[usize], free: &FreeDirections, c
             a + (c - a) * way
         };
         let d = d.normalize();
-        let room = room_of(bodies, group, &alive, d, StartOverlap::Refuse, &mut workspace);
-        match free.says(d) {
+        let room = travel_of_group(bodies, group, &alive, d, StartOverlap::Refuse, &mut workspace);
+        match free.classify(d) {
             Ok(Verdict::Free) => {
                 open += 1;
                 wrong += u32::from(!room.is_free());

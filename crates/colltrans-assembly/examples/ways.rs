@@ -6,30 +6,30 @@ use std::time::Instant;
 
 use colltrans::Pose;
 use colltrans::glam::DVec3;
-use colltrans::ways::{WayOptions, WaysOut, of_large_facets};
+use colltrans::removal::path::{RemovalOptions, RemovalSearch, large_facet_axes};
 use colltrans_assembly_io::read::{ReadOptions, read};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let assembly = read(&arguments[0], &ReadOptions::default())?;
-    let default = assembly.size() / f64::from(1 << 21);
+    let default = assembly.coordinate_size() / f64::from(1 << 21);
     let tolerance = arguments.get(1).map_or(Ok(default), |text| text.parse())?;
     let legs = arguments.get(2).map_or(Ok(12), |text| text.parse())?;
     let parts = assembly.parts();
     let bodies: Vec<_> = parts.iter().map(|part| part.solid().at(Pose::IDENTITY)).collect();
     let axes = arguments.get(3).map_or(Ok(0), |text| text.parse::<usize>())?;
-    let mut options = WayOptions::default().with_tolerance(tolerance).with_legs(legs);
+    let mut options = RemovalOptions::default().with_tolerance(tolerance).with_legs(legs);
     if axes > 0 {
-        let own = of_large_facets(&bodies);
+        let own = large_facet_axes(&bodies);
         let more =
             cube_axes().into_iter().filter(|d| own.iter().all(|a| a.cross(*d).length() > 1e-6));
         options = options.with_directions(own.iter().copied().chain(more).take(axes).collect());
     }
     let start = Instant::now();
-    let found = WaysOut::among(&bodies, &[], &options, None)?;
+    let found = RemovalSearch::search_among(&bodies, &[], &options, None)?;
     let seconds = start.elapsed().as_secs_f64();
     match found {
-        WaysOut::Found(way) => {
+        RemovalSearch::Found(way) => {
             for leg in &way.legs {
                 let names: Vec<&str> = leg.bodies.iter().map(|&k| parts[k].name()).collect();
                 println!(
@@ -42,11 +42,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             way.verify(&bodies)?;
             println!("{seconds:.4} s, {:?}", way.searched);
         }
-        WaysOut::Proven(proof) => {
+        RemovalSearch::Proven(proof) => {
             proof.verify(&bodies[0], &bodies[1])?;
-            println!("no way: {seconds:.4} s, proven in {} cells", proof.cells());
+            println!("no way: {seconds:.4} s, proven in {} cells", proof.cell_count());
         }
-        WaysOut::NotFound { searched } => println!("not found: {seconds:.4} s, {searched:?}"),
+        RemovalSearch::NotFound { searched } => println!("not found: {seconds:.4} s, {searched:?}"),
     }
     Ok(())
 }

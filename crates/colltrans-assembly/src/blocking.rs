@@ -9,31 +9,31 @@ use petgraph::algo::tarjan_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 use petgraph::visit::Dfs;
 
-use crate::matrix::Matrix;
+use crate::matrix::ContactMatrix;
 
 /// The blocking graph of some parts along one direction.
 #[derive(Debug, Clone)]
-pub struct Blocking {
+pub struct BlockingGraph {
     graph: DiGraph<usize, ()>,
     /// The node of each part, or `None` if the part is not in the graph.
     node: Vec<Option<NodeIndex>>,
 }
 
-impl Blocking {
+impl BlockingGraph {
     /// Builds the graph of the parts in the mask `among` along a direction of the matrix.
-    pub fn new(matrix: &Matrix, direction: usize, among: &[bool]) -> Self {
-        let arcs = matrix.meetings(direction).iter().map(|m| (m.moving, m.fixed));
+    pub fn new(matrix: &ContactMatrix, direction: usize, among: &[bool]) -> Self {
+        let arcs = matrix.contacts_along(direction).iter().map(|m| (m.moving, m.fixed));
         Self::from_arcs(arcs, among)
     }
 
     /// Builds the graph along a direction with additional arcs of order constraints.
     pub(crate) fn with_order(
-        matrix: &Matrix,
+        matrix: &ContactMatrix,
         direction: usize,
         order: &[(usize, usize)],
         among: &[bool],
     ) -> Self {
-        let arcs = matrix.meetings(direction).iter().map(|m| (m.moving, m.fixed));
+        let arcs = matrix.contacts_along(direction).iter().map(|m| (m.moving, m.fixed));
         Self::from_arcs(arcs.chain(order.iter().copied()), among)
     }
 
@@ -55,7 +55,7 @@ impl Blocking {
 
     /// Returns the closure of a part, itself included, in increasing order. It is empty if the part is not in the
     /// graph.
-    pub fn closure(&self, part: usize) -> Vec<usize> {
+    pub fn reachable_parts(&self, part: usize) -> Vec<usize> {
         let Some(start) = self.node[part] else { return Vec::new() };
         let mut search = Dfs::new(&self.graph, start);
         let mut reached = Vec::new();
@@ -67,7 +67,7 @@ impl Blocking {
     }
 
     /// Returns the parts that block a part directly, in increasing order.
-    pub fn blockers(&self, part: usize) -> Vec<usize> {
+    pub fn direct_blockers(&self, part: usize) -> Vec<usize> {
         let Some(node) = self.node[part] else { return Vec::new() };
         let mut met: Vec<usize> = self.graph.neighbors(node).map(|n| self.graph[n]).collect();
         met.sort_unstable();
@@ -76,7 +76,7 @@ impl Blocking {
     }
 
     /// Returns the strongly connected components, each in increasing order, sorted by their first parts.
-    pub fn groups(&self) -> Vec<Vec<usize>> {
+    pub fn strong_components(&self) -> Vec<Vec<usize>> {
         let mut groups: Vec<Vec<usize>> = tarjan_scc(&self.graph)
             .into_iter()
             .map(|nodes| {
@@ -90,9 +90,9 @@ impl Blocking {
     }
 
     /// Returns the components that no arc leaves. Each can be removed.
-    pub fn removable(&self) -> Vec<Vec<usize>> {
+    pub fn removable_groups(&self) -> Vec<Vec<usize>> {
         let mut group_of = vec![usize::MAX; self.node.len()];
-        let groups = self.groups();
+        let groups = self.strong_components();
         for (k, group) in groups.iter().enumerate() {
             for &part in group {
                 group_of[part] = k;
@@ -138,18 +138,18 @@ mod tests {
             let n = 1 + random.index(8);
             let arcs = random_arcs(n, &mut random);
             let among: Vec<bool> = (0..n).map(|_| random.unit() < 0.8).collect();
-            let graph = Blocking::from_arcs(arcs.iter().copied(), &among);
+            let graph = BlockingGraph::from_arcs(arcs.iter().copied(), &among);
             let closed = closed_sets(n, &arcs, &among);
             let set = |parts: &[usize]| parts.iter().map(|&k| 1_u32 << k).sum::<u32>();
             for part in (0..n).filter(|&k| among[k]) {
                 let least =
                     closed.iter().filter(|s| *s >> part & 1 == 1).min_by_key(|s| s.count_ones());
-                assert_eq!(Some(&set(&graph.closure(part))), least);
+                assert_eq!(Some(&set(&graph.reachable_parts(part))), least);
             }
             // Removable groups are the minimal closed sets.
             let minimal = |s: &&u32| !closed.iter().any(|t| t != *s && t & **s == *t);
             let mut expected: Vec<u32> = closed.iter().filter(minimal).copied().collect();
-            let mut found: Vec<u32> = graph.removable().iter().map(|g| set(g)).collect();
+            let mut found: Vec<u32> = graph.removable_groups().iter().map(|g| set(g)).collect();
             expected.sort_unstable();
             found.sort_unstable();
             assert_eq!(found, expected);

@@ -3,15 +3,15 @@
 //! - With a tolerance `L` every body is shrunk by `L / 2`, or by its own chord error ([`Fit`]).
 //! - With a minimum gap bodies keep their shape. Queries then use [`Cast::keeping`], and boxes are grown by
 //!   half of the gap.
-//! - A pair with a [role](crate::roles) or a tolerance of its own has bodies of its own, which serve only
-//!   queries of this pair.
+//! - A pair with a tolerance of its own, or with a screw that is replaced by its core, has bodies of its own
+//!   ([`roles`](crate::roles)). They serve only queries of this pair.
 
 mod turning;
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use colltrans::free::{CellBlocker, FreeError, FreeOptions};
+use colltrans::removal::directions::{CellBlocker, FreeError, FreeOptions};
 use colltrans::solid::{
     ShrinkReport, SolidCast, SolidContact, SolidError, SolidOptions, StartOverlap, Workspace,
 };
@@ -19,15 +19,15 @@ use colltrans::{Bounded, Cast, Clearance, MAX_MAGNITUDE, Pose, QueryError, Solid
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::boxes::{BoxTree, Living};
+use crate::boxes::{BoxTree, RemainingBoxes};
 use crate::error::AssemblyError;
 use crate::part::{Assembly, Ignored, Part};
-use crate::roles::{Role, Tolerated};
+use crate::roles::{PairTolerance, Role};
 use crate::slabs::Slabs;
 use crate::threads::Thread;
 use colltrans::Aabb;
 
-pub(crate) use turning::Turned;
+pub(crate) use turning::ScrewOutcome;
 
 /// Maximum number of pairs of parts whose boxes intersect. The limit bounds the memory.
 pub(crate) const MOST_NEIGHBOURS: usize = 1 << 19;
@@ -43,12 +43,12 @@ pub enum Fit {
     Chords {
         /// Tolerance for the last digits of coordinates.
         base: f64,
-        /// Maximum tolerance of a pair: twice the largest chord error, and `base`.
+        /// Maximum tolerance of a pair: twice the largest chord error, plus `base`.
         largest: f64,
     },
     /// Minimum gap of two bodies in all directions. Bodies that are nearer at the start overlap, and motions
     /// stop at this distance. Pairs that touch on purpose must be listed as ignored.
-    Apart(f64),
+    MinGap(f64),
 }
 
 /// Rounding of single precision, as a share of the assembly's extent.
@@ -79,14 +79,14 @@ impl Fit {
         let parts = assembly.parts();
         let file_digits = parts.iter().map(Part::last_digits).fold(0.0, f64::max);
         let is_coarse = parts.iter().any(Part::is_coarse);
-        let extent_digits = if is_coarse { SINGLE_DIGITS * assembly.extent() } else { 0.0 };
-        file_digits.max(extent_digits).max(DOUBLE_DIGITS * assembly.size())
+        let extent_digits = if is_coarse { SINGLE_DIGITS * assembly.largest_side() } else { 0.0 };
+        file_digits.max(extent_digits).max(DOUBLE_DIGITS * assembly.coordinate_size())
     }
 
     /// Returns the length below which distances count as equal and parts as touching: [`Self::digits`], but
     /// at least the rounding of single precision of the assembly's extent.
     pub(crate) fn negligible(assembly: &Assembly) -> f64 {
-        Self::digits(assembly).max(SINGLE_DIGITS * assembly.extent())
+        Self::digits(assembly).max(SINGLE_DIGITS * assembly.largest_side())
     }
 
     /// Returns the length by which a part is shrunk.
@@ -94,7 +94,7 @@ impl Fit {
         match self {
             Self::Tolerance(length) => length / 2.0,
             Self::Chords { base, .. } => part.chord_error().unwrap_or(0.0) + base / 2.0,
-            Self::Apart(_) => 0.0,
+            Self::MinGap(_) => 0.0,
         }
     }
 
@@ -102,7 +102,7 @@ impl Fit {
     const fn min_gap(self) -> f64 {
         match self {
             Self::Tolerance(_) | Self::Chords { .. } => 0.0,
-            Self::Apart(length) => length,
+            Self::MinGap(length) => length,
         }
     }
 
@@ -110,7 +110,7 @@ impl Fit {
     pub const fn tolerance(self) -> f64 {
         match self {
             Self::Tolerance(length) | Self::Chords { largest: length, .. } => length,
-            Self::Apart(length) => -length,
+            Self::MinGap(length) => -length,
         }
     }
 }
@@ -122,7 +122,7 @@ pub struct Stop {
     /// [`SolidContact::translation`]. Equal to `displaced` with a minimum gap.
     pub translation: Bounded,
     /// Translation until the shrunk bodies touch, or until the minimum gap is reached; never negative.
-    pub displaced: Bounded,
+    pub shrunk_translation: Bounded,
     /// Unit contact normal in the world, from the moving part to the other one.
     pub normal: DVec3,
     /// Contact point on the other part, in the world.
@@ -144,7 +144,7 @@ impl Stop {
 
 /// Free travel of one part before another one stops it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Room {
+pub enum FreeTravel {
     /// The parts never meet.
     Free,
     /// The parts meet.
@@ -171,7 +171,7 @@ impl ShrunkBody {
         let from = core.as_ref().unwrap_or(part.solid());
         let (solid, report) = match fit {
             Fit::Tolerance(_) | Fit::Chords { .. } => from.shrunk(fit.shrink_distance(part))?,
-            Fit::Apart(_) => (from.clone(), ShrinkReport::default()),
+            Fit::MinGap(_) => (from.clone(), ShrinkReport::default()),
         };
         let given = corresponding_triangles(&solid, from);
         Ok(Self { solid, core, given, report })
@@ -179,7 +179,7 @@ impl ShrunkBody {
 
     /// Describes the defects of the shrunk solid.
     fn faults(&self, given: &Solid) -> Vec<String> {
-        let ShrinkReport { stuck, inverted, .. } = &self.report;
+        let ShrinkReport { fixed_vertices: stuck, inverted, .. } = &self.report;
         let mut found = Vec::new();
         if self.solid.is_closed()
             && enclosed_volume(given) > 0.0
@@ -221,17 +221,17 @@ pub struct Bodies<'a> {
     noise: f64,
     /// Number of queries of two parts.
     #[cfg(test)]
-    pub(crate) asked: std::sync::atomic::AtomicUsize,
+    pub(crate) query_count: std::sync::atomic::AtomicUsize,
     /// Number of visits of parts, pairs and tree nodes during planning.
     #[cfg(test)]
-    pub(crate) looks: std::sync::atomic::AtomicUsize,
+    pub(crate) visit_count: std::sync::atomic::AtomicUsize,
 }
 
 /// Resolved fit of a pair with a role or tolerance of its own.
 #[derive(Clone, Copy)]
 struct OwnFit {
     fit: Fit,
-    tolerated: Tolerated,
+    tolerated: PairTolerance,
     /// Thread of the pair, if the core of the screw is tested instead of the screw.
     thread: Option<Thread>,
 }
@@ -243,16 +243,16 @@ impl<'a> Bodies<'a> {
     /// Builds the bodies, and finds the pairs that overlap at the start.
     ///
     /// # Errors
-    /// - [`AssemblyError::Length`]: the tolerance or minimum gap is negative, not finite or too large.
+    /// - [`AssemblyError::InvalidValue`]: the tolerance or minimum gap is negative, not finite or too large.
     /// - [`AssemblyError::Part`]: a part cannot be shrunk.
     /// - [`AssemblyError::TooMany`]: too many boxes of parts intersect.
     pub fn new(assembly: &'a Assembly, fit: Fit) -> Result<Self, AssemblyError> {
         let (what, value) = match fit {
             Fit::Tolerance(value) | Fit::Chords { largest: value, .. } => ("tolerance", value),
-            Fit::Apart(value) => ("minimum gap", value),
+            Fit::MinGap(value) => ("minimum gap", value),
         };
         if !(0.0..=MAX_MAGNITUDE).contains(&value) {
-            return Err(AssemblyError::Length { what, value });
+            return Err(AssemblyError::InvalidValue { what, value });
         }
         let displaced =
             |part: &Part| ShrunkBody::new(part, None, fit).map_err(|e| part_error(part, e));
@@ -262,9 +262,9 @@ impl<'a> Bodies<'a> {
         let (pairs, own) = resolved_pair_fits(assembly, fit)?;
         let margin = fit.min_gap() / 2.0;
         let mut boxes: Vec<Aabb> =
-            displaced.iter().map(|part| part.solid.bounds().grown(margin)).collect();
+            displaced.iter().map(|part| part.solid.bounds().expanded(margin)).collect();
         for ([part, _], own) in &own {
-            boxes[*part] = boxes[*part].join(&own.solid.bounds());
+            boxes[*part] = boxes[*part].union(&own.solid.bounds());
         }
         let tree = BoxTree::new(boxes.iter().copied());
         let noise = 4.0 * Fit::negligible(assembly);
@@ -283,14 +283,14 @@ impl<'a> Bodies<'a> {
             partners: Vec::new(),
             noise,
             #[cfg(test)]
-            asked: std::sync::atomic::AtomicUsize::default(),
+            query_count: std::sync::atomic::AtomicUsize::default(),
             #[cfg(test)]
-            looks: std::sync::atomic::AtomicUsize::default(),
+            visit_count: std::sync::atomic::AtomicUsize::default(),
         };
-        let pairs = bodies.neighbours(0.0)?;
+        let pairs = bodies.neighbouring_pairs(0.0)?;
         let overlapping = pairs.into_par_iter().filter(|&[a, b]| bodies.overlap_in_place(a, b));
         bodies.overlapping = overlapping.collect();
-        let ignored = |pair: &&[usize; 2]| assembly.ignored(pair[0], pair[1]).is_some();
+        let ignored = |pair: &&[usize; 2]| assembly.ignored_contacts(pair[0], pair[1]).is_some();
         let ignored = bodies.overlapping.par_iter().filter(ignored);
         bodies.passing = ignored
             .filter_map(|&pair| Some((pair, bodies.overlap_free_tolerance(pair)?)))
@@ -316,7 +316,7 @@ impl<'a> Bodies<'a> {
 
     /// Iterates over the pairs of a part of `group` and a present part that overlap, are ignored or have a
     /// fit of their own. `there` marks the present parts by index.
-    pub(crate) fn partners<'s>(
+    pub(crate) fn present_partners<'s>(
         &'s self,
         group: &'s [usize],
         there: &'s [bool],
@@ -330,7 +330,8 @@ impl<'a> Bodies<'a> {
     fn overlap_free_tolerance(&self, pair: [usize; 2]) -> Option<f64> {
         let solids = self.pair_solids(pair);
         let [a, b] = solids.map(|solid| solid.at(Pose::IDENTITY));
-        let cast = Cast::new(a, b, DVec3::Z).ok()?.keeping(self.pair_fit(pair).min_gap()).ok()?;
+        let cast =
+            Cast::new(a, b, DVec3::Z).ok()?.with_min_gap(self.pair_fit(pair).min_gap()).ok()?;
         let tolerance = cast.least_tolerance()? * DEEPER;
         solids.into_iter().all(|solid| stays_whole(solid, tolerance)).then_some(tolerance)
     }
@@ -353,7 +354,7 @@ impl<'a> Bodies<'a> {
 
     /// Returns the fit of a pair with a role or tolerance of its own, if any.
     fn own_fit(&self, [a, b]: [usize; 2]) -> Option<&OwnFit> {
-        self.count_look();
+        self.count_visit();
         self.pairs.get(&[a.min(b), a.max(b)])
     }
 
@@ -363,7 +364,7 @@ impl<'a> Bodies<'a> {
     }
 
     /// Returns the contacts that a pair with a fit of its own tolerates; `None` without such a fit.
-    pub fn tolerated(&self, pair: [usize; 2]) -> Option<Tolerated> {
+    pub fn tolerated_contacts(&self, pair: [usize; 2]) -> Option<PairTolerance> {
         self.own_fit(pair).map(|own| own.tolerated)
     }
 
@@ -379,7 +380,7 @@ impl<'a> Bodies<'a> {
 
     /// Returns twice the smallest distance by which the general fit shrinks one of these parts. No pair of
     /// them has a smaller tolerance by that fit.
-    pub(crate) fn least_tolerance(&self, parts: &[usize]) -> f64 {
+    pub(crate) fn least_fit_tolerance(&self, parts: &[usize]) -> f64 {
         let distance = |&k: &usize| self.fit.shrink_distance(&self.assembly.parts()[k]);
         2.0 * parts.iter().map(distance).reduce(f64::min).unwrap_or(0.0)
     }
@@ -399,7 +400,7 @@ impl<'a> Bodies<'a> {
     /// Facets are inverted or intersect others where a part is thinner than the tolerance. Results there do
     /// not describe the part. Vertices that cannot be shrunk are those of saddles, around which no
     /// displacement is inward for all facets.
-    pub fn remark(&self, part: usize) -> Option<String> {
+    pub fn shrink_defects(&self, part: usize) -> Option<String> {
         let given = self.assembly.parts()[part].solid();
         let faults = |displaced: &ShrunkBody, by: &str| {
             let found = displaced.faults(displaced.core.as_ref().unwrap_or(given));
@@ -426,8 +427,11 @@ impl<'a> Bodies<'a> {
     }
 
     /// Returns the parts whose boxes a part's box meets along unit direction `d`, each with a lower bound of
-    /// the distance, nearest first. Pairs that are always ignored are left out.
-    pub(crate) fn ahead(&self, part: usize, d: DVec3) -> Vec<(f64, usize)> {
+    /// the distance, nearest first.
+    ///
+    /// Leaves out pairs that are always ignored, and pairs whose extents along the directions of
+    /// [`measure_along`](Self::measure_along) prove that they never meet.
+    pub(crate) fn parts_ahead(&self, part: usize, d: DVec3) -> Vec<(f64, usize)> {
         let mut found = self.tree.boxes_ahead(&self.boxes[part], d);
         found.retain(|&(_, other)| other != part && !self.always_ignored(part, other));
         if let Some(slabs) = self.slabs.get() {
@@ -443,31 +447,31 @@ impl<'a> Bodies<'a> {
     }
 
     /// Returns the set of parts marked in `there`, for [`first_ahead`](Self::first_ahead).
-    pub(crate) fn living(&self, there: &[bool]) -> Living {
-        self.tree.living(there)
+    pub(crate) fn remaining_parts(&self, there: &[bool]) -> RemainingBoxes {
+        self.tree.remaining_boxes(there)
     }
 
     /// Removes a part from the set.
-    pub(crate) fn remove(&self, living: &mut Living, part: usize) {
+    pub(crate) fn remove(&self, living: &mut RemainingBoxes, part: usize) {
         self.tree.remove(living, part);
     }
 
     /// Computes the bounds of the tree nodes for boxes given by part, for [`visit_high`](Self::visit_high).
-    pub(crate) fn bounds_of(&self, boxes: &[Aabb]) -> Vec<Aabb> {
+    pub(crate) fn node_bounds(&self, boxes: &[Aabb]) -> Vec<Aabb> {
         self.tree.bounds_of(boxes)
     }
 
     /// Calls `call` with the parts of the set below the nodes whose bounds satisfy `wanted`; see
     /// [`BoxTree::visit_high`].
-    pub(crate) fn visit_high(
+    pub(crate) fn visit_highest_first(
         &self,
-        living: &Living,
+        living: &RemainingBoxes,
         bounds: &[Aabb],
         wanted: impl Fn(&Aabb) -> bool,
         call: impl FnMut(usize),
     ) {
         let wanted = |bounds: &Aabb| {
-            self.count_look();
+            self.count_visit();
             wanted(bounds)
         };
         self.tree.visit_high(living, bounds, wanted, call);
@@ -478,19 +482,22 @@ impl<'a> Bodies<'a> {
         not(test),
         expect(clippy::unused_self, reason = "only builds of tests have the counter")
     )]
-    pub(crate) fn count_look(&self) {
+    pub(crate) fn count_visit(&self) {
         #[cfg(test)]
-        self.looks.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        self.visit_count.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
     }
 
     /// Calls `call` with the parts of `living` whose boxes a part's box meets along unit direction `d`, and
     /// with a lower bound of the distance, nearest first, until a call returns `true`. Returns that part;
     /// `None` if no call returns `true`.
-    pub(crate) fn first_ahead(
+    ///
+    /// Leaves out pairs that are always ignored, and pairs whose extents along the directions of
+    /// [`measure_along`](Self::measure_along) prove that they never meet.
+    pub(crate) fn first_part_ahead(
         &self,
         part: usize,
         d: DVec3,
-        living: &Living,
+        living: &RemainingBoxes,
         mut call: impl FnMut(f64, usize) -> bool,
     ) -> Option<usize> {
         let passes = |other: usize| {
@@ -521,10 +528,11 @@ impl<'a> Bodies<'a> {
     ///
     /// # Errors
     /// [`AssemblyError::TooMany`] for more than [`MOST_NEIGHBOURS`] pairs.
-    pub(crate) fn neighbours(&self, by: f64) -> Result<Vec<[usize; 2]>, AssemblyError> {
+    pub(crate) fn neighbouring_pairs(&self, by: f64) -> Result<Vec<[usize; 2]>, AssemblyError> {
         let mut pairs = Vec::new();
         for a in 0..self.len() {
-            let near = self.tree.meeting(&self.boxes[a].grown(by)).into_iter().filter(|&b| b > a);
+            let near =
+                self.tree.intersecting(&self.boxes[a].expanded(by)).into_iter().filter(|&b| b > a);
             pairs.extend(near.filter(|&b| !self.always_ignored(a, b)).map(|b| [a, b]));
             if pairs.len() > MOST_NEIGHBOURS {
                 let (what, most) =
@@ -537,8 +545,8 @@ impl<'a> Bodies<'a> {
 
     /// Checks whether two parts are never tested: all their contacts are ignored, or they are glued.
     fn always_ignored(&self, a: usize, b: usize) -> bool {
-        self.assembly.ignored(a, b) == Some(Ignored::Always)
-            || self.tolerated([a, b]) == Some(Tolerated::AsOne)
+        self.assembly.ignored_contacts(a, b) == Some(Ignored::Always)
+            || self.tolerated_contacts([a, b]) == Some(PairTolerance::Glued)
     }
 
     /// Returns how an overlap of two parts at the start is treated; `start` is the general rule.
@@ -548,8 +556,8 @@ impl<'a> Bodies<'a> {
         b: usize,
         start: StartOverlap,
     ) -> StartOverlap {
-        let crossing = self.tolerated([a, b]) == Some(Tolerated::Crossing);
-        match self.assembly.ignored(a, b) {
+        let crossing = self.tolerated_contacts([a, b]) == Some(PairTolerance::Crossing);
+        match self.assembly.ignored_contacts(a, b) {
             None if !crossing => start,
             _ => StartOverlap::Ignore,
         }
@@ -557,9 +565,9 @@ impl<'a> Bodies<'a> {
 
     /// Checks whether a plan disregards contacts of two parts at the start: all contacts, contacts of a snap
     /// fit, or an ignored overlap.
-    pub(crate) fn lets_pass(&self, a: usize, b: usize, start: StartOverlap) -> bool {
+    pub(crate) fn disregards_contacts(&self, a: usize, b: usize, start: StartOverlap) -> bool {
         self.always_ignored(a, b)
-            || matches!(self.tolerated([a, b]), Some(Tolerated::Bent(_)))
+            || matches!(self.tolerated_contacts([a, b]), Some(PairTolerance::Snap(_)))
             || (self.overlaps(a, b) && self.pair_start_overlap(a, b, start) == StartOverlap::Ignore)
     }
 
@@ -569,28 +577,28 @@ impl<'a> Bodies<'a> {
     /// [`Room::Overlapping`]. If `start` is [`StartOverlap::Ignore`], or the assembly
     /// [ignores](Assembly::with_ignored) the overlap, only contacts that begin later stop the part. Motions
     /// that deepen an ignored overlap stop it too, if the assembly ignores the overlap.
-    pub fn room(
+    pub fn free_travel(
         &self,
         [a, b]: [usize; 2],
         d: DVec3,
         before: Option<f64>,
         start: StartOverlap,
         workspace: &mut Workspace,
-    ) -> Room {
+    ) -> FreeTravel {
         #[cfg(test)]
-        self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        if let Some(Tolerated::Bent(length)) = self.tolerated([a, b]) {
+        self.query_count.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        if let Some(PairTolerance::Snap(length)) = self.tolerated_contacts([a, b]) {
             return self.room_beyond_snap([a, b], d, length, before, workspace);
         }
         let (overlapping, start) = (self.overlaps(a, b), self.pair_start_overlap(a, b, start));
         if overlapping && start == StartOverlap::Refuse {
-            return Room::Overlapping;
+            return FreeTravel::Overlapping;
         }
         // With a limit, also an infinite one, no separating plane is computed for free parts.
         let options = SolidOptions::default()
             .with_start_overlap(start)
             .with_tolerance(0.0)
-            .with_keep(self.pair_fit([a, b]).min_gap())
+            .with_min_gap(self.pair_fit([a, b]).min_gap())
             .with_before(before.unwrap_or(f64::INFINITY))
             .with_overlapping(overlapping);
         let solids = self.pair_solids([a, b]);
@@ -601,12 +609,13 @@ impl<'a> Bodies<'a> {
         });
         let stops = later.into_iter().chain(deeper);
         let stops = stops.map(|c| self.stop_from_contact([a, b], d, c.triangles, &c));
-        let nearest = stops.min_by(|x, y| x.displaced.value.total_cmp(&y.displaced.value));
-        nearest.map_or(Room::Free, Room::Blocked)
+        let nearest =
+            stops.min_by(|x, y| x.shrunk_translation.value.total_cmp(&y.shrunk_translation.value));
+        nearest.map_or(FreeTravel::Free, FreeTravel::Blocked)
     }
 
-    /// Returns the free travel of a part that snaps over another one: contacts that begin after it has moved
-    /// by `length`.
+    /// Returns the free travel of a part that snaps over another one. Only contacts that begin after a
+    /// displacement by `length` along `d` stop it.
     fn room_beyond_snap(
         &self,
         pair: [usize; 2],
@@ -614,19 +623,19 @@ impl<'a> Bodies<'a> {
         length: f64,
         before: Option<f64>,
         workspace: &mut Workspace,
-    ) -> Room {
+    ) -> FreeTravel {
         let [moving, fixed] = self.pair_solids(pair);
         let options = SolidOptions::default()
             .with_start_overlap(StartOverlap::Ignore)
             .with_tolerance(0.0)
-            .with_keep(self.pair_fit(pair).min_gap())
+            .with_min_gap(self.pair_fit(pair).min_gap())
             .with_before(before.map_or(f64::INFINITY, |before| (before - length).max(0.0)));
         let answer = Pose::from_translation(d * length)
             .ok()
             .and_then(|pose| Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), d).ok())
             .and_then(|cast| cast.with_options(options).ok())
             .and_then(|cast| cast.clearance_in(workspace).ok());
-        let Some(Clearance::Blocked { contact, .. }) = answer else { return Room::Free };
+        let Some(Clearance::Blocked { contact, .. }) = answer else { return FreeTravel::Free };
         let Bounded { value, lower, upper } = contact.translation;
         let translation = Bounded {
             value: value + length,
@@ -634,30 +643,36 @@ impl<'a> Bodies<'a> {
             upper: (upper + length).next_up(),
         };
         let SolidContact { normal, point_on_fixed: point, triangles, .. } = contact;
-        Room::Blocked(Stop { translation, displaced: translation, normal, point, triangles })
+        FreeTravel::Blocked(Stop {
+            translation,
+            shrunk_translation: translation,
+            normal,
+            point,
+            triangles,
+        })
     }
 
     /// Returns the pairs of a part of `group` and a present part outside of it whose box it meets along unit
     /// direction `d`. `there` marks the present parts by index.
     pub(crate) fn pairs_ahead(&self, group: &[usize], d: DVec3, there: &[bool]) -> Vec<[usize; 2]> {
-        let all = |&a: &usize| self.ahead(a, d).into_iter().map(move |(_, b)| [a, b]);
+        let all = |&a: &usize| self.parts_ahead(a, d).into_iter().map(move |(_, b)| [a, b]);
         let wanted = |[_, b]: &[usize; 2]| there[*b] && !group.contains(b);
         group.iter().flat_map(all).filter(wanted).collect()
     }
 
     /// Checks whether a part ever meets another one along unit direction `d`, or overlaps it at the start.
-    pub(crate) fn meets(
+    pub(crate) fn ever_meets(
         &self,
         pair: [usize; 2],
         d: DVec3,
         start: StartOverlap,
         workspace: &mut Workspace,
     ) -> bool {
-        self.room(pair, d, None, start, workspace) != Room::Free
+        self.free_travel(pair, d, None, start, workspace) != FreeTravel::Free
     }
 
     /// Returns by index whether a part is one of these.
-    pub(crate) fn mask(&self, parts: &[usize]) -> Vec<bool> {
+    pub(crate) fn part_mask(&self, parts: &[usize]) -> Vec<bool> {
         let mut mask = vec![false; self.len()];
         for &part in parts {
             mask[part] = true;
@@ -670,7 +685,7 @@ impl<'a> Bodies<'a> {
     ///
     /// # Errors
     /// [`AssemblyError::Free`] if the solids cannot be joined.
-    pub(crate) fn joined(
+    pub(crate) fn joined_solid(
         &self,
         parts: &[usize],
     ) -> Result<(Solid, Vec<(usize, u32)>), AssemblyError> {
@@ -696,9 +711,9 @@ impl<'a> Bodies<'a> {
     /// Checks that two parts block each other without exceptions.
     ///
     /// # Errors
-    /// [`AssemblyError::NoDirections`] with a minimum gap, and for parts that are ignored, have a fit of
+    /// [`AssemblyError::DirectionsUnavailable`] with a minimum gap, and for parts that are ignored, have a fit of
     /// their own, overlap at the start, or are not both closed.
-    pub(crate) fn check_plain(&self, [a, b]: [usize; 2]) -> Result<(), AssemblyError> {
+    pub(crate) fn check_without_exceptions(&self, [a, b]: [usize; 2]) -> Result<(), AssemblyError> {
         let why = if self.fit.min_gap() > 0.0 {
             "a minimum gap is set"
         } else if self.always_ignored(a, b) {
@@ -713,30 +728,30 @@ impl<'a> Bodies<'a> {
             return Ok(());
         };
         let [a, b] = [a, b].map(|part| self.assembly.parts()[part].name().to_owned());
-        Err(AssemblyError::NoDirections { a, b, why })
+        Err(AssemblyError::DirectionsUnavailable { a, b, why })
     }
 
-    /// Returns the contact of two parts that had no facets but these two. Returns `None` if these facets do
-    /// not stop the part, or if the pair is a snap fit. Parts that overlap are not rejected.
-    pub(crate) fn stop_by(
+    /// Returns the contact of one facet of each part, as if the parts had no other facets. Returns `None` if
+    /// these facets do not stop the part, or if the pair is a snap fit. Parts that overlap are not rejected.
+    pub(crate) fn stop_of_triangles(
         &self,
         [a, b]: [usize; 2],
         triangles: [u32; 2],
         d: DVec3,
         start: StartOverlap,
     ) -> Option<Stop> {
-        if matches!(self.tolerated([a, b]), Some(Tolerated::Bent(_))) {
+        if matches!(self.tolerated_contacts([a, b]), Some(PairTolerance::Snap(_))) {
             return None;
         }
         let start = self.pair_start_overlap(a, b, start);
         let options = SolidOptions::default()
             .with_start_overlap(start)
             .with_tolerance(0.0)
-            .with_keep(self.pair_fit([a, b]).min_gap())
+            .with_min_gap(self.pair_fit([a, b]).min_gap())
             .with_before(f64::INFINITY)
             .with_overlapping(start == StartOverlap::Ignore && self.overlaps(a, b));
         let cast = cast_in_world(self.pair_solids([a, b]), d, options)?;
-        let contact = cast.stop_by(triangles)?;
+        let contact = cast.contact_of_triangles(triangles)?;
         Some(self.stop_from_contact([a, b], d, triangles, &contact))
     }
 
@@ -750,7 +765,13 @@ impl<'a> Bodies<'a> {
     ) -> Stop {
         let SolidContact { normal, point_on_fixed: point, translation: displaced, .. } = *contact;
         let nominal = self.nominal_translation(pair, d, triangles, contact);
-        Stop { translation: nominal.unwrap_or(displaced), displaced, normal, point, triangles }
+        Stop {
+            translation: nominal.unwrap_or(displaced),
+            shrunk_translation: displaced,
+            normal,
+            point,
+            triangles,
+        }
     }
 
     /// Returns the translation at which the facets in contact meet on the unshrunk parts; `None` without a
@@ -771,7 +792,7 @@ impl<'a> Bodies<'a> {
         let triangles = [of.given[moving as usize], by.given[fixed as usize]];
         let parts = [self.unshrunk_solid([a, b]), self.unshrunk_solid([b, a])];
         let cast = cast_in_world(parts, d, SolidOptions::default())?;
-        cast.true_place(triangles, contact.translation, contact.normal, shift)
+        cast.nominal_translation(triangles, contact.translation, contact.normal, shift)
     }
 
     /// Returns the displacement of a point of a triangle of the first part by shrinking. Vertices keep their
@@ -785,7 +806,7 @@ impl<'a> Bodies<'a> {
     }
 
     /// Returns the pairs that overlap at the start with this fit, the smaller index first, sorted.
-    pub fn overlapping(&self) -> &[[usize; 2]] {
+    pub fn overlapping_pairs(&self) -> &[[usize; 2]] {
         &self.overlapping
     }
 
@@ -802,7 +823,7 @@ impl<'a> Bodies<'a> {
     /// Checks whether two parts overlap as given in the files: `None` if they do not. Otherwise returns the
     /// least tolerance with which they do not overlap, or `Some(None)` if no tolerance up to their size
     /// suffices.
-    pub fn overlap_as_given(&self, a: usize, b: usize) -> Option<Option<f64>> {
+    pub fn least_tolerance(&self, a: usize, b: usize) -> Option<Option<f64>> {
         least_tolerance_of_parts(self.assembly, [a, b])
     }
 
@@ -812,32 +833,39 @@ impl<'a> Bodies<'a> {
     ///
     /// Rounding: a product `p . d` has an error of at most `3 u` of the sum `s` of its terms' absolute
     /// values, therefore a difference of two at most `4 u` of both sums. Because the length of `d` is 1 up to
-    /// `4 u`, the quotient has a further relative error of `8 u`.
-    pub fn past(&self, a: usize, b: usize, d: DVec3) -> Bounded {
-        self.seen(a, d).past(&self.seen(b, d))
+    /// `4 u`, the distance has a further relative error of `8 u`.
+    pub fn travel_beyond(&self, a: usize, b: usize, d: DVec3) -> Bounded {
+        self.direction_extents(a, d).travel_beyond(&self.direction_extents(b, d))
     }
 
     /// Computes [`Self::past`] with part `a` displaced by `by`.
-    pub(crate) fn past_displaced(&self, a: usize, by: DVec3, b: usize, d: DVec3) -> Bounded {
+    pub(crate) fn travel_beyond_displaced(
+        &self,
+        a: usize,
+        by: DVec3,
+        b: usize,
+        d: DVec3,
+    ) -> Bounded {
         // Adding the displacement is one more rounding of each vertex.
         let sums = if by == DVec3::ZERO { SUMS } else { SUMS + 1.0 };
-        self.past_moved((a, |p| p + by), b, d, sums)
+        self.travel_beyond_moved((a, |p| p + by), b, d, sums)
     }
 
     /// Computes [`Self::past`] with the vertices of part `a` mapped by `moved`. Each mapped vertex has an
     /// error of at most `sums - 9` roundings of the size of its coordinates.
-    pub(crate) fn past_moved(
+    pub(crate) fn travel_beyond_moved(
         &self,
         (a, moved): (usize, impl Fn(DVec3) -> DVec3),
         b: usize,
         d: DVec3,
         sums: f64,
     ) -> Bounded {
-        DirectionExtents { sums, ..self.projection_of_moved(a, moved, d) }.past(&self.seen(b, d))
+        DirectionExtents { sums, ..self.projection_of_moved(a, moved, d) }
+            .travel_beyond(&self.direction_extents(b, d))
     }
 
     /// Returns the extents of a part in the frame of unit direction `d`.
-    pub(crate) fn seen(&self, part: usize, d: DVec3) -> DirectionExtents {
+    pub(crate) fn direction_extents(&self, part: usize, d: DVec3) -> DirectionExtents {
         self.projection_of_moved(part, |p| p, d)
     }
 
@@ -851,7 +879,7 @@ impl<'a> Bodies<'a> {
         let (u, v) = d.any_orthonormal_pair();
         let (mut terms, mut reach) = (0.0_f64, 0.0_f64);
         let vertices = self.assembly.parts()[part].solid().vertices().iter();
-        let bounds = Aabb::of_points(vertices.map(|p| {
+        let bounds = Aabb::from_points(vertices.map(|p| {
             let p = moved(*p);
             terms = terms.max(p.abs().dot(d.abs()));
             reach = reach.max(p.abs().max_element());
@@ -864,11 +892,12 @@ impl<'a> Bodies<'a> {
     /// rounding.
     pub fn overlaps_displaced(&self, a: usize, by: DVec3, b: usize) -> bool {
         #[cfg(test)]
-        self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        self.query_count.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let Ok(pose) = Pose::from_translation(by) else { return false };
         let [moving, fixed] = self.pair_solids([a, b]);
-        let options =
-            SolidOptions::default().with_tolerance(0.0).with_keep(self.pair_fit([a, b]).min_gap());
+        let options = SolidOptions::default()
+            .with_tolerance(0.0)
+            .with_min_gap(self.pair_fit([a, b]).min_gap());
         let cast = Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), DVec3::Z);
         cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
     }
@@ -908,8 +937,8 @@ impl DirectionExtents {
     }
 
     /// Returns the distance, with bounds, that this part must move until it lies wholly beyond another one;
-    /// see [`Bodies::past`].
-    pub(crate) fn past(&self, fixed: &Self) -> Bounded {
+    /// see [`Bodies::travel_beyond`].
+    pub(crate) fn travel_beyond(&self, fixed: &Self) -> Bounded {
         const U: f64 = f64::EPSILON / 2.0;
         let (own, other) = (&self.bounds, &fixed.bounds);
         // Each coordinate is a sum of three terms of at most this size, on rounded axes.
@@ -935,41 +964,44 @@ fn resolved_pair_fits(assembly: &Assembly, fit: Fit) -> Result<OwnFits, Assembly
     // Bodies by part, tolerance and kind of fit, so that a part of many pairs is shrunk once for each
     // tolerance.
     let mut known: BTreeMap<(usize, u64, bool), Arc<ShrunkBody>> = BTreeMap::new();
-    for (pair, given) in assembly.pairs() {
+    for (pair, given) in assembly.pair_fits() {
         let parts = pair.map(|k| &assembly.parts()[k]);
         let (tolerated, thread) = match (given.role, given.tolerance) {
-            (Some(Role::Glued), _) => (Tolerated::AsOne, None),
-            (Some(Role::Snap), Some(length)) => (Tolerated::Bent(length), None),
+            (Some(Role::Glued), _) => (PairTolerance::Glued, None),
+            (Some(Role::Snap), Some(length)) => (PairTolerance::Snap(length), None),
             (Some(Role::Thread), _) => {
                 let solids = parts.map(Part::solid);
-                let thread = Thread::of(solids);
-                let core = thread.and_then(|t| Some((t, t.core(solids[t.screw])?)));
-                let tolerated = core
-                    .as_ref()
-                    .map_or(Tolerated::Crossing, |(thread, _)| Tolerated::Core(thread.radii[0]));
+                let thread = Thread::detect(solids);
+                let core = thread.and_then(|t| Some((t, t.thread_core(solids[t.screw])?)));
+                let tolerated = core.as_ref().map_or(PairTolerance::Crossing, |(thread, _)| {
+                    PairTolerance::Core(thread.radii[0])
+                });
                 (tolerated, core)
             }
-            (_, Some(length)) => (Tolerated::Within(length), None),
+            (_, Some(length)) => (PairTolerance::Within(length), None),
             (_, None) => match least_tolerance_of_parts(assembly, pair) {
                 None => continue,
-                Some(None) => (Tolerated::Crossing, None),
+                Some(None) => (PairTolerance::Crossing, None),
                 Some(Some(depth)) => {
                     let length = two_digits_up(depth * DEEPER);
                     let whole = parts.iter().all(|part| stays_whole(part.solid(), length));
                     if matches!(fit, Fit::Tolerance(general) if length <= general) {
                         continue;
                     }
-                    (if whole { Tolerated::Within(length) } else { Tolerated::Crossing }, None)
+                    (
+                        if whole { PairTolerance::Within(length) } else { PairTolerance::Crossing },
+                        None,
+                    )
                 }
             },
         };
         let tolerance_fit = match fit {
             Fit::Tolerance(_) | Fit::Chords { .. } => fit,
-            Fit::Apart(_) => Fit::default_for(assembly),
+            Fit::MinGap(_) => Fit::default_for(assembly),
         };
         let own_fit = match tolerated {
-            Tolerated::Within(length) => Fit::Tolerance(length),
-            Tolerated::Core(_) => match (given.tolerance, &thread) {
+            PairTolerance::Within(length) => Fit::Tolerance(length),
+            PairTolerance::Core(_) => match (given.tolerance, &thread) {
                 (Some(length), _) => Fit::Tolerance(length),
                 (None, Some((thread, core))) => {
                     fit_of_thread_core(parts, thread, core, tolerance_fit)
@@ -1049,9 +1081,9 @@ fn least_tolerance_of_solids(solids: [&Solid; 2]) -> Option<Option<f64>> {
 }
 
 /// Checks whether a solid shrunk by half of a tolerance is valid: closed, with positive volume and without
-/// inverted facets.
+/// inverted facets. A tolerance of at least the smallest side of the solid's box is too large.
 fn stays_whole(solid: &Solid, tolerance: f64) -> bool {
-    let fits = tolerance < solid.bounds().size().min_element();
+    let fits = tolerance < solid.bounds().side_lengths().min_element();
     fits && solid.shrunk(tolerance / 2.0).is_ok_and(|(smaller, report)| {
         report.inverted.is_empty() && enclosed_volume(&smaller) > 0.0 && smaller.is_closed()
     })

@@ -39,7 +39,7 @@ pub(crate) fn first_meeting(gaps: impl IntoIterator<Item = ([f64; 2], f64)>) -> 
 }
 
 /// Returns the minimum and maximum of some numbers; without numbers, `[infinity, -infinity]`.
-pub(crate) fn span(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+pub(crate) fn value_range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     values.into_iter().fold(none, |[low, high], x| [low.min(x), high.max(x)])
 }
@@ -65,21 +65,21 @@ pub(crate) struct BoxTree {
 }
 
 /// Subset of the boxes of a tree, from which boxes are removed.
-pub(crate) struct Living {
+pub(crate) struct RemainingBoxes {
     /// For each node, the number of remaining boxes below it.
     under: Vec<usize>,
     /// For each index, whether the box remains.
     there: Vec<bool>,
 }
 
-impl Living {
+impl RemainingBoxes {
     /// Checks whether a box remains.
-    pub(crate) fn has(&self, number: usize) -> bool {
+    pub(crate) fn contains(&self, number: usize) -> bool {
         self.there[number]
     }
 
     /// Returns for each index whether the box remains.
-    pub(crate) fn there(&self) -> &[bool] {
+    pub(crate) fn remaining_flags(&self) -> &[bool] {
         &self.there
     }
 }
@@ -101,16 +101,16 @@ impl BoxTree {
     }
 
     /// Returns the subset of boxes whose entry in `there` is `true`.
-    pub(crate) fn living(&self, there: &[bool]) -> Living {
+    pub(crate) fn remaining_boxes(&self, there: &[bool]) -> RemainingBoxes {
         let count = |node: &Node| {
             let items = &self.items[node.first..node.first + node.count];
             items.iter().filter(|item| there[item.1]).count()
         };
-        Living { under: self.nodes.iter().map(count).collect(), there: there.to_vec() }
+        RemainingBoxes { under: self.nodes.iter().map(count).collect(), there: there.to_vec() }
     }
 
-    /// Removes a box from the subset. Runs in the depth of the tree.
-    pub(crate) fn remove(&self, living: &mut Living, number: usize) {
+    /// Removes a box from the subset. Takes time proportional to the depth of the tree.
+    pub(crate) fn remove(&self, living: &mut RemainingBoxes, number: usize) {
         if !std::mem::take(&mut living.there[number]) {
             return;
         }
@@ -134,7 +134,7 @@ impl BoxTree {
     /// Only nodes along the paths to these boxes are visited.
     pub(crate) fn first_ahead(
         &self,
-        living: &Living,
+        living: &RemainingBoxes,
         moving: &Aabb,
         d: DVec3,
         mut call: impl FnMut(f64, usize) -> bool,
@@ -166,7 +166,8 @@ impl BoxTree {
                 continue;
             }
             for (bounds, number) in &self.items[node.first..node.first + node.count] {
-                let bound = entry_translation(moving, bounds, d).filter(|_| living.has(*number));
+                let bound =
+                    entry_translation(moving, bounds, d).filter(|_| living.contains(*number));
                 open.extend(bound.map(|bound| Reverse((key(bound), true, *number))));
             }
         }
@@ -179,10 +180,10 @@ impl BoxTree {
         let mut bounds = vec![Aabb::EMPTY; self.nodes.len()];
         for (at, node) in self.nodes.iter().enumerate().rev() {
             bounds[at] = if node.skip > 0 {
-                bounds[at + 1].join(&bounds[at + node.skip])
+                bounds[at + 1].union(&bounds[at + node.skip])
             } else {
                 let items = &self.items[node.first..node.first + node.count];
-                items.iter().fold(Aabb::EMPTY, |all, item| all.join(&boxes[item.1]))
+                items.iter().fold(Aabb::EMPTY, |all, item| all.union(&boxes[item.1]))
             };
         }
         bounds
@@ -193,7 +194,7 @@ impl BoxTree {
     /// the third axis.
     pub(crate) fn visit_high(
         &self,
-        living: &Living,
+        living: &RemainingBoxes,
         bounds: &[Aabb],
         wanted: impl Fn(&Aabb) -> bool,
         mut call: impl FnMut(usize),
@@ -206,7 +207,7 @@ impl BoxTree {
             let node = &self.nodes[at];
             if node.skip == 0 {
                 let items = self.items[node.first..node.first + node.count].iter();
-                items.filter(|item| living.has(item.1)).for_each(|item| call(item.1));
+                items.filter(|item| living.contains(item.1)).for_each(|item| call(item.1));
                 continue;
             }
             let [first, second] = [at + 1, at + node.skip];
@@ -219,12 +220,12 @@ impl BoxTree {
     fn build_subtree(&mut self, first: usize, count: usize) {
         let at = self.nodes.len();
         let items = &mut self.items[first..first + count];
-        let bounds = items.iter().map(|i| i.0).reduce(|a, b| a.join(&b)).unwrap_or(items[0].0);
+        let bounds = items.iter().map(|i| i.0).reduce(|a, b| a.union(&b)).unwrap_or(items[0].0);
         self.nodes.push(Node { bounds, skip: 0, first, count });
         if count <= LEAF {
             return;
         }
-        let centers = Aabb::of_points(items.iter().map(|i| i.0.center()));
+        let centers = Aabb::from_points(items.iter().map(|i| i.0.center()));
         let axis = (centers.high - centers.low).max_position();
         let half = count / 2;
         items.select_nth_unstable_by(half, |a, b| {
@@ -262,9 +263,9 @@ impl BoxTree {
     }
 
     /// Returns the indices of the boxes that intersect `query`, in increasing order.
-    pub(crate) fn meeting(&self, query: &Aabb) -> Vec<usize> {
+    pub(crate) fn intersecting(&self, query: &Aabb) -> Vec<usize> {
         let mut found = Vec::new();
-        self.visit(|b| b.meets(query), |_, k| found.push(k));
+        self.visit(|b| b.intersects(query), |_, k| found.push(k));
         found.sort_unstable();
         found
     }
@@ -304,8 +305,8 @@ mod tests {
             let tree = BoxTree::new(boxes.iter().copied());
             let query = random_box(&mut random, snapped);
             let d = if snapped { DVec3::AXES[round % 3] } else { random.direction() };
-            let listed: Vec<usize> = (0..round).filter(|&k| boxes[k].meets(&query)).collect();
-            assert_eq!(tree.meeting(&query), listed);
+            let listed: Vec<usize> = (0..round).filter(|&k| boxes[k].intersects(&query)).collect();
+            assert_eq!(tree.intersecting(&query), listed);
             let mut boxes_ahead: Vec<usize> =
                 tree.boxes_ahead(&query, d).iter().map(|x| x.1).collect();
             boxes_ahead.sort_unstable();
@@ -314,7 +315,7 @@ mod tests {
             assert_eq!(boxes_ahead, swept);
             // The best-first order, while boxes are removed one by one.
             let mut there: Vec<bool> = (0..round).map(|_| random.unit() < 0.7).collect();
-            let mut living = tree.living(&there);
+            let mut living = tree.remaining_boxes(&there);
             loop {
                 let mut called = Vec::new();
                 tree.first_ahead(&living, &query, d, |bound, k| {
@@ -341,7 +342,7 @@ mod tests {
             let rotated: Vec<Aabb> = (0..round).map(|_| random_box(&mut random, false)).collect();
             let bounds = tree.bounds_of(&rotated);
             let there: Vec<bool> = (0..round).map(|_| random.unit() < 0.7).collect();
-            let (living, query) = (tree.living(&there), random_box(&mut random, false));
+            let (living, query) = (tree.remaining_boxes(&there), random_box(&mut random, false));
             let over =
                 |b: &Aabb| (0..2).all(|k| b.low[k] <= query.high[k] && query.low[k] <= b.high[k]);
             let best = std::cell::Cell::new(f64::NEG_INFINITY);
@@ -366,12 +367,13 @@ mod tests {
             let (a, b) = (random_box(&mut random, snapped), random_box(&mut random, snapped));
             let d = if snapped { DVec3::AXES[round % 3] } else { random.direction() };
             let moved = |t: f64| Aabb { low: a.low + d * t, high: a.high + d * t };
-            let stepped = (0..60_000).map(|k| f64::from(k) * 1e-3).find(|&t| moved(t).meets(&b));
+            let stepped =
+                (0..60_000).map(|k| f64::from(k) * 1e-3).find(|&t| moved(t).intersects(&b));
             match (entry_translation(&a, &b, d), stepped) {
                 (Some(t), Some(s)) => assert!((t - s).abs() < 1.1e-3, "{t} {s}"),
                 (None, None) => (),
                 // Only corners meet, between two steps.
-                (Some(t), None) => assert!(b.grown(2e-3).meets(&moved(t))),
+                (Some(t), None) => assert!(b.expanded(2e-3).intersects(&moved(t))),
                 (None, Some(s)) => panic!("missed at {s}"),
             }
         }

@@ -18,12 +18,12 @@ use rayon::prelude::*;
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
 use crate::liaisons::Liaison;
-use crate::sphere::{angle, unit};
+use crate::sphere::{angle_between, normalized_direction};
 use crate::{cylinders, inertia};
 
 /// Source of a candidate direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Origin {
+pub enum CandidateSource {
     /// Given by the caller.
     Given,
     /// An axis of the world.
@@ -40,7 +40,7 @@ pub enum Origin {
     Sample,
 }
 
-impl Origin {
+impl CandidateSource {
     /// Returns a short name for users.
     pub const fn name(self) -> &'static str {
         match self {
@@ -61,13 +61,13 @@ pub struct Candidate {
     /// The direction, of length 1.
     pub direction: DVec3,
     /// Source of the direction.
-    pub origin: Origin,
+    pub source: CandidateSource,
 }
 
 /// Options for the choice of candidate directions.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Choice {
+pub struct CandidateOptions {
     /// Directions of the caller, of any nonzero length. They are always included.
     pub given: Vec<DVec3>,
     /// Direction of gravity, of any nonzero length. It and its opposite are included like given directions, because
@@ -76,20 +76,27 @@ pub struct Choice {
     /// Whether to search for directions beyond the given ones.
     pub search: bool,
     /// Angle below which two directions are equal, in radians.
-    pub apart: f64,
+    pub min_angle: f64,
     /// Maximum number of directions for all parts in addition to the given ones. Further directions are finer ones.
-    pub main: usize,
+    pub max_main: usize,
     /// Maximum number of finer directions.
-    pub finer: usize,
+    pub max_finer: usize,
 }
 
-impl Default for Choice {
+impl Default for CandidateOptions {
     fn default() -> Self {
-        Self { given: Vec::new(), gravity: None, search: true, apart: 0.005, main: 14, finer: 512 }
+        Self {
+            given: Vec::new(),
+            gravity: None,
+            search: true,
+            min_angle: 0.005,
+            max_main: 14,
+            max_finer: 512,
+        }
     }
 }
 
-impl Choice {
+impl CandidateOptions {
     /// Returns the options with other [`given`](Self::given) directions.
     #[must_use]
     pub fn with_given(self, given: Vec<DVec3>) -> Self {
@@ -111,18 +118,18 @@ impl Choice {
 
 /// A direction that is tested only for parts that no other direction moves.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finer {
+pub struct FinerCandidate {
     /// The direction, of length 1.
     pub direction: DVec3,
     /// Source of the direction.
-    pub origin: Origin,
+    pub source: CandidateSource,
     /// Index of the part that it comes from; `None` if it may concern any part.
     pub part: Option<usize>,
 }
 
-impl Finer {
+impl FinerCandidate {
     /// Checks whether it comes from a part of the mask.
-    pub fn concerns(&self, parts: &[bool]) -> bool {
+    pub fn concerns_any_of(&self, parts: &[bool]) -> bool {
         self.part.is_none_or(|part| parts[part])
     }
 }
@@ -133,7 +140,7 @@ pub struct Candidates {
     /// Directions to test for all parts.
     pub main: Vec<Candidate>,
     /// Directions to test for parts that none of those moves.
-    pub finer: Vec<Finer>,
+    pub finer: Vec<FinerCandidate>,
 }
 
 impl Candidates {
@@ -147,24 +154,28 @@ impl Candidates {
 ///
 /// # Errors
 /// Returns an error if a direction of the caller is zero or not finite.
-pub fn candidates(
+pub fn find_candidates(
     bodies: &Bodies,
     liaisons: &[Liaison],
-    choice: &Choice,
+    choice: &CandidateOptions,
 ) -> Result<Candidates, AssemblyError> {
     let mut main = Vec::new();
     let gravity = choice.gravity.filter(|_| choice.search);
     let both = gravity.into_iter().flat_map(|gravity| [gravity, -gravity]);
     for given in choice.given.iter().copied().chain(both) {
-        main.push(Candidate { direction: unit(given)?, origin: Origin::Given });
+        main.push(Candidate {
+            direction: normalized_direction(given)?,
+            source: CandidateSource::Given,
+        });
     }
     if !choice.search {
         return Ok(Candidates { main, finer: Vec::new() });
     }
     let given = main.len();
-    let mut chosen = Chosen { found: Candidates { main, finer: Vec::new() }, apart: choice.apart };
+    let mut chosen =
+        Chosen { found: Candidates { main, finer: Vec::new() }, apart: choice.min_angle };
     for axis in DVec3::AXES {
-        chosen.add_main(axis, Origin::World);
+        chosen.add_main(axis, CandidateSource::World);
     }
     let mut axes: Vec<Axis> = (0..bodies.len())
         .into_par_iter()
@@ -172,9 +183,9 @@ pub fn candidates(
         .collect();
     axes.sort_by(|x, y| x.rank.cmp(&y.rank).then(y.weight.total_cmp(&x.weight)));
     for axis in axes {
-        if chosen.found.main.len() + 2 <= given + choice.main && axis.rank < 2 {
+        if chosen.found.main.len() + 2 <= given + choice.max_main && axis.rank < 2 {
             chosen.add_main(axis.along, axis.origin);
-        } else if chosen.found.finer.len() + 2 <= choice.finer {
+        } else if chosen.found.finer.len() + 2 <= choice.max_finer {
             chosen.add_finer(&axis);
         }
     }
@@ -188,25 +199,29 @@ struct Chosen {
 
 impl Chosen {
     fn is_new(&self, direction: DVec3) -> bool {
-        self.found.main.iter().all(|c| angle(c.direction, direction) > self.apart)
+        self.found.main.iter().all(|c| angle_between(c.direction, direction) > self.apart)
     }
 
-    fn add_main(&mut self, axis: DVec3, origin: Origin) {
+    fn add_main(&mut self, axis: DVec3, origin: CandidateSource) {
         for direction in [without_signed_zeros(axis), without_signed_zeros(-axis)] {
             if self.is_new(direction) {
-                self.found.main.push(Candidate { direction, origin });
+                self.found.main.push(Candidate { direction, source: origin });
             }
         }
     }
 
     fn add_finer(&mut self, axis: &Axis) {
         for direction in [without_signed_zeros(axis.along), without_signed_zeros(-axis.along)] {
-            let same = |f: &Finer| {
-                f.part == Some(axis.part) && angle(f.direction, direction) <= self.apart
+            let same = |f: &FinerCandidate| {
+                f.part == Some(axis.part) && angle_between(f.direction, direction) <= self.apart
             };
             if self.is_new(direction) && !self.found.finer.iter().any(same) {
                 let Axis { origin, part, .. } = *axis;
-                self.found.finer.push(Finer { direction, origin, part: Some(part) });
+                self.found.finer.push(FinerCandidate {
+                    direction,
+                    source: origin,
+                    part: Some(part),
+                });
             }
         }
     }
@@ -223,7 +238,7 @@ struct Axis {
     rank: usize,
     weight: f64,
     along: DVec3,
-    origin: Origin,
+    origin: CandidateSource,
     part: usize,
 }
 
@@ -236,25 +251,30 @@ fn part_axes(bodies: &Bodies, liaisons: &[Liaison], part: usize) -> Vec<Axis> {
     let mut axes = Vec::new();
     let mut add =
         |rank, weight, axis, origin| axes.push(Axis { rank, weight, along: axis, origin, part });
-    for (length, axis) in cylinders::axes(solid) {
-        add(0, length, axis, Origin::Cylinder);
+    for (length, axis) in cylinders::cylinder_axes(solid) {
+        add(0, length, axis, CandidateSource::Cylinder);
     }
     let normals = contact_normals(liaisons, part, NORMALS);
     for (k, &(weight, n)) in normals.iter().enumerate() {
         // The normal of the largest contact often is the removal direction; the others are finer candidates.
-        add(if k == 0 { 1 } else { 3 }, weight, n, Origin::Contact);
+        add(if k == 0 { 1 } else { 3 }, weight, n, CandidateSource::Contact);
         for &(other, m) in &normals[..k] {
             let cross = n.cross(m);
             // Nearly parallel normals define no axis. The closer they are to orthogonal, the better the axis is
             // defined.
             if cross.length() > 0.1 {
                 let weight = weight.min(other) * cross.length_squared();
-                add(if k == 1 { 1 } else { 2 }, weight, cross.normalize(), Origin::Orthogonal);
+                add(
+                    if k == 1 { 1 } else { 2 },
+                    weight,
+                    cross.normalize(),
+                    CandidateSource::Orthogonal,
+                );
             }
         }
     }
-    for axis in inertia::axes(solid) {
-        add(4, 1.0, axis, Origin::Inertia);
+    for axis in inertia::principal_axes(solid) {
+        add(4, 1.0, axis, CandidateSource::Inertia);
     }
     axes
 }
@@ -266,12 +286,12 @@ fn contact_normals(liaisons: &[Liaison], part: usize, most: usize) -> Vec<(f64, 
     let own = liaisons.iter().filter(|l| l.parts.contains(&part));
     let mut patches: Vec<(f64, DVec3)> = own
         .flat_map(|l| &l.patches)
-        .flat_map(|p| [(p.area, p.normal), (p.area, p.other)])
+        .flat_map(|p| [(p.area, p.normal), (p.area, p.other_normal)])
         .collect();
     patches.sort_by(|x, y| y.0.total_cmp(&x.0));
     let mut normals: Vec<(f64, DVec3)> = Vec::new();
     for (area, normal) in patches {
-        let near = |m: DVec3| angle(m, normal).min(angle(m, -normal)) < TOGETHER;
+        let near = |m: DVec3| angle_between(m, normal).min(angle_between(m, -normal)) < TOGETHER;
         let count = normals.len();
         match normals.iter_mut().find(|x| near(x.1)) {
             Some(known) => known.0 += area,

@@ -14,58 +14,58 @@ use petgraph::graph::DiGraph;
 use petgraph::unionfind::UnionFind;
 
 use crate::error::AssemblyError;
-use crate::sphere::unit;
+use crate::sphere::normalized_direction;
 
 /// A unit: parts that leave as one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Unit {
+pub struct RigidUnit {
     /// Name of the unit.
     pub name: Option<String>,
     /// Indices of the parts, in increasing order.
     pub parts: Vec<usize>,
     /// Whether the unit is taken apart once nothing else is left. This holds for subassemblies, not for parts that
     /// stay together.
-    pub apart: bool,
+    pub is_subassembly: bool,
 }
 
 /// A forbidden range of directions of a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Never {
+pub struct ForbiddenDirection {
     /// Index of the part.
     pub part: usize,
     /// Centre of the range, of length 1.
     pub direction: DVec3,
     /// Angle of the range around its centre, in degrees.
-    pub within: f64,
+    pub angle_degrees: f64,
 }
 
 /// Constraints on plans.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Constraints {
     before: Vec<[usize; 2]>,
-    units: Vec<Unit>,
-    never: Vec<Never>,
+    units: Vec<RigidUnit>,
+    never: Vec<ForbiddenDirection>,
 }
 
 /// Default angle around a forbidden direction, in degrees.
-pub const WITHIN_DEGREES: f64 = 45.0;
+pub const DEFAULT_FORBIDDEN_DEGREES: f64 = 45.0;
 
 /// Tolerance of cosines, so that an angle equal to the limit is within it.
 const COSINE_TOLERANCE: f64 = 1e-12;
 
 impl Constraints {
     /// Returns the pairs of which the first part leaves before or together with the second.
-    pub fn before(&self) -> &[[usize; 2]] {
+    pub fn order_pairs(&self) -> &[[usize; 2]] {
         &self.before
     }
 
     /// Returns the units of parts that leave as one.
-    pub fn units(&self) -> &[Unit] {
+    pub fn units(&self) -> &[RigidUnit] {
         &self.units
     }
 
     /// Returns the forbidden directions of parts.
-    pub fn never(&self) -> &[Never] {
+    pub fn forbidden_directions(&self) -> &[ForbiddenDirection] {
         &self.never
     }
 
@@ -86,7 +86,7 @@ impl Constraints {
         if let ([a], [b]) = (first, second)
             && a == b
         {
-            return Err(AssemblyError::Order { names: vec![name(*a).to_owned()] });
+            return Err(AssemblyError::CyclicOrder { names: vec![name(*a).to_owned()] });
         }
         let pairs = first.iter().flat_map(|&a| second.iter().map(move |&b| [a, b]));
         self.before.extend(pairs.filter(|[a, b]| a != b));
@@ -101,20 +101,22 @@ impl Constraints {
     /// Returns an error if two subassemblies overlap and neither contains the other, or if the order becomes cyclic.
     pub(crate) fn add_unit<'a>(
         &mut self,
-        added: Unit,
+        added: RigidUnit,
         name: impl Fn(usize) -> &'a str,
     ) -> Result<(), AssemblyError> {
         self.units.push(added);
         // Units that stay together are merged if they share a part. A subassembly that contains a part of one is
         // extended by all of it.
-        while let Some([a, b]) = self.overlapping_units(|a, b| !a.apart || !b.apart) {
-            let (from, to) = if self.units[b].apart { (a, b) } else { (b, a) };
+        while let Some([a, b]) =
+            self.overlapping_units(|a, b| !a.is_subassembly || !b.is_subassembly)
+        {
+            let (from, to) = if self.units[b].is_subassembly { (a, b) } else { (b, a) };
             let parts = self.units[from].parts.clone();
             let both = &mut self.units[to];
             both.parts.extend(parts);
             both.parts.sort_unstable();
             both.parts.dedup();
-            if !both.apart {
+            if !both.is_subassembly {
                 self.units.remove(from);
             }
         }
@@ -124,15 +126,20 @@ impl Constraints {
                 let parts = || unit.parts.iter().map(|&p| name(p)).collect::<Vec<_>>().join(", ");
                 unit.name.clone().unwrap_or_else(parts)
             });
-            return Err(AssemblyError::Subassemblies { names });
+            return Err(AssemblyError::OverlappingSubassemblies { names });
         }
         self.check_acyclic(name)
     }
 
     /// Returns the first two units that share parts although neither may contain the other, among pairs that are
     /// `wanted`.
-    fn overlapping_units(&self, wanted: impl Fn(&Unit, &Unit) -> bool) -> Option<[usize; 2]> {
-        let holds = |a: &Unit, b: &Unit| a.apart && b.parts.iter().all(|p| a.parts.contains(p));
+    fn overlapping_units(
+        &self,
+        wanted: impl Fn(&RigidUnit, &RigidUnit) -> bool,
+    ) -> Option<[usize; 2]> {
+        let holds = |a: &RigidUnit, b: &RigidUnit| {
+            a.is_subassembly && b.parts.iter().all(|p| a.parts.contains(p))
+        };
         let pairs = (0..self.units.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
         let clash = |pair: &[usize; 2]| {
             let [a, b] = pair.map(|k| &self.units[k]);
@@ -146,16 +153,20 @@ impl Constraints {
     ///
     /// # Errors
     /// Returns an error if the direction is zero or not finite, or the angle is negative or at least 180 degrees.
-    pub(crate) fn add_never(
+    pub(crate) fn add_forbidden_direction(
         &mut self,
         part: usize,
         direction: DVec3,
         within: f64,
     ) -> Result<(), AssemblyError> {
         if !(0.0..180.0).contains(&within) {
-            return Err(AssemblyError::Angle { degrees: within });
+            return Err(AssemblyError::InvalidAngle { degrees: within });
         }
-        self.never.push(Never { part, direction: unit(direction)?, within });
+        self.never.push(ForbiddenDirection {
+            part,
+            direction: normalized_direction(direction)?,
+            angle_degrees: within,
+        });
         Ok(())
     }
 
@@ -164,7 +175,7 @@ impl Constraints {
     fn check_acyclic<'a>(&self, name: impl Fn(usize) -> &'a str) -> Result<(), AssemblyError> {
         let count = self.before.iter().flatten().chain(self.units.iter().flat_map(|u| &u.parts));
         let mut one = UnionFind::new(count.max().map_or(0, |most| most + 1));
-        for unit in self.units.iter().filter(|unit| !unit.apart) {
+        for unit in self.units.iter().filter(|unit| !unit.is_subassembly) {
             unit.parts.windows(2).for_each(|pair| {
                 one.union(pair[0], pair[1]);
             });
@@ -180,7 +191,7 @@ impl Constraints {
         parts.sort_unstable();
         parts.dedup();
         let names = parts.into_iter().map(|part| name(part).to_owned()).collect();
-        Err(AssemblyError::Order { names })
+        Err(AssemblyError::CyclicOrder { names })
     }
 
     /// Checks whether constraints concern these parts.
@@ -226,7 +237,7 @@ impl Constraints {
     /// group, or the group takes apart a unit that the part does not belong to.
     pub(crate) fn must_wait_for(&self, group: &[usize], part: usize) -> bool {
         let later = |pair: &[usize; 2]| pair[0] == part && group.contains(&pair[1]);
-        let apart = |unit: &Unit| {
+        let apart = |unit: &RigidUnit| {
             let some = group.iter().any(|k| unit.parts.contains(k));
             some && !unit.parts.contains(&part) && unit.parts.iter().any(|k| !group.contains(k))
         };
@@ -246,16 +257,17 @@ impl Constraints {
 
     /// Checks whether no part of a group is forbidden to move along a direction.
     pub(crate) fn allows_direction(&self, group: &[usize], d: DVec3) -> bool {
-        let kept = |never: &&Never| {
+        let kept = |never: &&ForbiddenDirection| {
             group.contains(&never.part)
-                && never.direction.dot(d) >= never.within.to_radians().cos() - COSINE_TOLERANCE
+                && never.direction.dot(d)
+                    >= never.angle_degrees.to_radians().cos() - COSINE_TOLERANCE
         };
         !self.never.iter().any(|never| kept(&never))
     }
 
     /// Checks whether these parts belong to one unit that stays together.
     pub(crate) fn keeps_together(&self, parts: &[usize]) -> bool {
-        let mut units = self.units.iter().filter(|unit| !unit.apart);
+        let mut units = self.units.iter().filter(|unit| !unit.is_subassembly);
         units.any(|unit| parts.iter().all(|part| unit.parts.contains(part)))
     }
 
@@ -265,18 +277,18 @@ impl Constraints {
     }
 
     /// Returns the name of a group if its parts are exactly a named unit.
-    pub fn name(&self, parts: &[usize]) -> Option<&str> {
+    pub fn group_name(&self, parts: &[usize]) -> Option<&str> {
         let mut named = self.units.iter().filter(|unit| unit.parts == parts);
         named.find_map(|unit| unit.name.as_deref())
     }
 }
 
-impl Unit {
+impl RigidUnit {
     /// Checks whether the unit may be taken apart because nothing else is present.
     pub(crate) fn is_released(&self, present: &[bool]) -> bool {
         let all = present.iter().filter(|present| **present).count();
         let own = self.parts.iter().filter(|&&part| is_there(present, part)).count();
-        self.apart && all == own
+        self.is_subassembly && all == own
     }
 }
 
@@ -289,8 +301,8 @@ fn is_there(present: &[bool], part: usize) -> bool {
 mod tests {
     use super::*;
 
-    fn unit_of(parts: &[usize], apart: bool) -> Unit {
-        Unit { name: None, parts: parts.to_vec(), apart }
+    fn unit_of(parts: &[usize], apart: bool) -> RigidUnit {
+        RigidUnit { name: None, parts: parts.to_vec(), is_subassembly: apart }
     }
 
     #[test]
@@ -300,17 +312,19 @@ mod tests {
         order.add_before([&[0], &[1, 2]], name).unwrap();
         order.add_before([&[1], &[2]], name).unwrap();
         let refused = order.clone().add_before([&[2], &[0]], name).unwrap_err();
-        assert!(matches!(refused, AssemblyError::Order { names } if names == ["a", "b", "c"]));
+        assert!(
+            matches!(refused, AssemblyError::CyclicOrder { names } if names == ["a", "b", "c"])
+        );
         let refused = order.clone().add_unit(unit_of(&[0, 1], false), name).unwrap_err();
-        assert!(matches!(refused, AssemblyError::Order { .. }));
+        assert!(matches!(refused, AssemblyError::CyclicOrder { .. }));
         let refused = order.clone().add_before([&[3], &[3]], name).unwrap_err();
-        assert!(matches!(refused, AssemblyError::Order { names } if names == ["d"]));
+        assert!(matches!(refused, AssemblyError::CyclicOrder { names } if names == ["d"]));
         // Patterns may overlap: each part is before all others, but not before itself.
         order.clone().add_before([&[0, 3], &[3]], name).unwrap();
         // The order of parts in a subassembly applies when it is taken apart.
         order.add_unit(unit_of(&[0, 1], true), name).unwrap();
-        assert!(order.add_never(3, DVec3::ZERO, 10.0).is_err());
-        assert!(order.add_never(3, DVec3::Z, 180.0).is_err());
+        assert!(order.add_forbidden_direction(3, DVec3::ZERO, 10.0).is_err());
+        assert!(order.add_forbidden_direction(3, DVec3::Z, 180.0).is_err());
     }
 
     #[test]
@@ -324,7 +338,7 @@ mod tests {
         assert_eq!(order.units()[1].parts, [0, 1, 2, 3]);
         order.add_unit(unit_of(&[0, 1, 2, 3, 4], true), name).unwrap();
         let refused = order.clone().add_unit(unit_of(&[3, 4], true), name).unwrap_err();
-        assert!(matches!(refused, AssemblyError::Subassemblies { .. }));
+        assert!(matches!(refused, AssemblyError::OverlappingSubassemblies { .. }));
         // If a subassembly is alone, it may be taken apart, except for parts that stay together.
         let arcs = |present: [bool; 5]| order.order_arcs(&present).len();
         assert_eq!(arcs([true; 5]), 6 + 12);
@@ -335,7 +349,7 @@ mod tests {
     #[test]
     fn directions_within_the_forbidden_angle_are_not_allowed() {
         let mut order = Constraints::default();
-        order.add_never(0, DVec3::new(0.0, 0.0, -2.0), 45.0).unwrap();
+        order.add_forbidden_direction(0, DVec3::new(0.0, 0.0, -2.0), 45.0).unwrap();
         let within = DVec3::new(0.0, 1.0, -1.01).normalize();
         let beside = DVec3::new(0.0, 1.0, -0.99).normalize();
         assert!(!order.allows_direction(&[0, 1], within) && order.allows_direction(&[0], beside));

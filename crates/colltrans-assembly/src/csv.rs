@@ -6,7 +6,7 @@
 
 use std::fmt::Write;
 
-use colltrans_mesh::plain::shown;
+use colltrans_mesh::plain::escape_control;
 
 /// Content of a cell.
 #[derive(Debug, Clone, Copy)]
@@ -25,12 +25,12 @@ impl Table {
     pub(crate) fn new(heads: &[&str]) -> Self {
         let mut table = Self { text: String::new() };
         let heads: Vec<Cell> = heads.iter().map(|head| Cell::Text(head)).collect();
-        table.row(&heads);
+        table.push_row(&heads);
         table
     }
 
     /// Appends a line.
-    pub(crate) fn row(&mut self, cells: &[Cell]) {
+    pub(crate) fn push_row(&mut self, cells: &[Cell]) {
         for (k, cell) in cells.iter().enumerate() {
             if k > 0 {
                 self.text.push(',');
@@ -47,7 +47,7 @@ impl Table {
 
     /// Appends a text cell: escaped, quoted if it contains a separator or a quote.
     fn write_text_cell(&mut self, text: &str) {
-        let text = shown(text);
+        let text = escape_control(text);
         let is_formula = text.starts_with(['=', '+', '-', '@']);
         let prefix = if is_formula { "'" } else { "" };
         if text.contains([',', '"', ';']) {
@@ -58,7 +58,7 @@ impl Table {
     }
 
     /// Returns the table as text.
-    pub(crate) fn finish(self) -> String {
+    pub(crate) fn into_text(self) -> String {
         self.text
     }
 }
@@ -70,11 +70,11 @@ mod tests {
     #[test]
     fn csv_formulas_and_control_characters_are_escaped() {
         let mut table = Table::new(&["a", "b"]);
-        table.row(&[Cell::Text("=1+1"), Cell::Number(-0.5)]);
-        table.row(&[Cell::Text("a,\"b\"\r\nc"), Cell::Text("\t@x")]);
-        table.row(&[Cell::Text("\u{1b}[31m\u{9b}\u{7f}"), Cell::Text("@\u{200b}")]);
-        table.row(&[Cell::Text("plain"), Cell::Text("-x")]);
+        table.push_row(&[Cell::Text("=1+1"), Cell::Number(-0.5)]);
+        table.push_row(&[Cell::Text("a,\"b\"\r\nc"), Cell::Text("\t@x")]);
+        table.push_row(&[Cell::Text("\u{1b}[31m\u{9b}\u{7f}"), Cell::Text("@\u{200b}")]);
+        table.push_row(&[Cell::Text("plain"), Cell::Text("-x")]);
         let expected = "a,b\n'=1+1,-0.5\n\"a,\"\"b\"\"\\r\\nc\",\\t@x\n\\u{1b}[31m\\u{9b}\\u{7f},'@\\u{200b}\nplain,'-x\n";
-        assert_eq!(table.finish(), expected);
+        assert_eq!(table.into_text(), expected);
     }
 }

@@ -1,9 +1,9 @@
 //! Detects the axes of cylinders from facets.
 //!
 //! Edges along a tessellated cylinder are parallel to its axis, and their facets meet at small angles. The
-//! search groups such edges by direction. A direction is an axis if it has at least four edges and the
-//! surface turns by at least a right angle over them. Edges of cones and spheres have many directions, so
-//! they yield no axis.
+//! search groups such edges by direction. A direction is an axis if it has at least four edges, and the
+//! surface turns by at least a right angle over them. They must have at least 2 % of the length of all such edges.
+//! Edges of cones and spheres have many directions, so they yield no axis.
 
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 use colltrans::Solid;
 use glam::DVec3;
 
-use crate::sphere::angle;
+use crate::sphere::angle_between;
 
 /// Maximum angle in radians (60 degrees) between facets of a round surface.
 const MAX_SMOOTH_ANGLE: f64 = 1.05;
@@ -36,7 +36,7 @@ struct Bundle {
 
 /// Returns the unit axes of the cylinders of a solid, each with the total length of its edges, longest first.
 /// Takes time proportional to the number of facets, apart from sorting the smooth edges.
-pub fn axes(solid: &Solid) -> Vec<(f64, DVec3)> {
+pub fn cylinder_axes(solid: &Solid) -> Vec<(f64, DVec3)> {
     let mut edges = smooth_edges(solid);
     edges.sort_by(|x, y| y.0.length_squared().total_cmp(&x.0.length_squared()));
     let total_length: f64 = edges.iter().map(|e| e.0.length()).sum();
@@ -44,7 +44,9 @@ pub fn axes(solid: &Solid) -> Vec<(f64, DVec3)> {
     for (edge, turn) in edges {
         let length = edge.length();
         let axis = edge / length;
-        let near = |b: &&mut Bundle| angle(b.axis, axis).min(angle(b.axis, -axis)) < PARALLEL_ANGLE;
+        let near = |b: &&mut Bundle| {
+            angle_between(b.axis, axis).min(angle_between(b.axis, -axis)) < PARALLEL_ANGLE
+        };
         let count = bundles.len();
         match bundles.iter_mut().find(near) {
             Some(bundle) => {
@@ -78,7 +80,7 @@ fn smooth_edges(solid: &Solid) -> Vec<(DVec3, f64)> {
         for i in 0..3 {
             let (a, b) = (t[i], t[(i + 1) % 3]);
             if let Some((m, _)) = open_edges.remove(&[a.min(b), a.max(b)]) {
-                let turn = angle(n, m);
+                let turn = angle_between(n, m);
                 if turn > MIN_ANGLE && turn < MAX_SMOOTH_ANGLE {
                     edges.push((corner(b) - corner(a), turn));
                 }
@@ -104,13 +106,13 @@ mod tests {
             let rotation = random.rotation();
             let mesh = prism(sides, 2.0).mapped(|v| rotation * v);
             let solid = Solid::from_mesh(&mesh.vertices, &mesh.faces).unwrap();
-            let axes = axes(&solid);
+            let axes = cylinder_axes(&solid);
             assert_eq!(axes.len(), 1, "{sides}");
             let axis = rotation * DVec3::Z;
-            assert!(angle(axes[0].1, axis).min(angle(axes[0].1, -axis)) < 1e-9);
+            assert!(angle_between(axes[0].1, axis).min(angle_between(axes[0].1, -axis)) < 1e-9);
         }
         let cube = prism(4, 1.0);
         let solid = Solid::from_mesh(&cube.vertices, &cube.faces).unwrap();
-        assert!(axes(&solid).is_empty());
+        assert!(cylinder_axes(&solid).is_empty());
     }
 }

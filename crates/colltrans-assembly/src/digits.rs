@@ -1,8 +1,8 @@
 //! Rounded numbers for text output.
 
 /// Formats a number with up to four significant digits.
-pub(crate) fn short(x: f64) -> String {
-    digits(x, 4)
+pub(crate) fn short_number(x: f64) -> String {
+    rounded_number(x, 4)
 }
 
 /// Formats a number with up to `count` significant digits.
@@ -10,7 +10,7 @@ pub(crate) fn short(x: f64) -> String {
 /// - Digits before the decimal point are always written in full.
 /// - Magnitudes below `1e-4` or from `1e7` on are written in scientific notation with three digits.
 /// - Values that are not finite are written as `∞`.
-pub(crate) fn digits(x: f64, count: i32) -> String {
+pub(crate) fn rounded_number(x: f64, count: i32) -> String {
     if x == 0.0 || !x.is_finite() {
         return if x == 0.0 { "0".into() } else { "∞".into() };
     }

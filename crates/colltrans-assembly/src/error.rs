@@ -1,10 +1,10 @@
 //! Errors of assemblies.
 
-use colltrans::free::FreeError;
-use colltrans_mesh::body::Refused;
+use colltrans::removal::directions::FreeError;
+use colltrans_mesh::body::BodyError;
 use thiserror::Error;
 
-/// Reason why a question about an assembly cannot be answered.
+/// Error of an assembly, or of a query about it.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AssemblyError {
@@ -14,17 +14,17 @@ pub enum AssemblyError {
         /// Name of the part.
         part: String,
         /// Reason.
-        source: Refused,
+        source: BodyError,
     },
     /// Two parts have the same name.
     #[error("duplicate part name {name}; part names must be unique")]
-    SameName {
+    DuplicateName {
         /// The name.
         name: String,
     },
     /// The name of a part or subassembly is empty.
     #[error("a part or subassembly has an empty name; names must not be empty")]
-    NoName,
+    EmptyName,
     /// A pair consists of one part twice.
     #[error("pair {name},{name} names the same part twice; a pair needs two different parts")]
     SamePart {
@@ -41,13 +41,13 @@ pub enum AssemblyError {
     },
     /// Order constraints form a cycle.
     #[error("cyclic order constraints: {}; remove one of these constraints", names.join(", "))]
-    Order {
+    CyclicOrder {
         /// Names of the parts of the cycle.
         names: Vec<String>,
     },
     /// Two subassemblies share parts, and neither contains the other.
     #[error("subassemblies {} and {} overlap; they must be disjoint, or one must contain the other", names[0], names[1])]
-    Subassemblies {
+    OverlappingSubassemblies {
         /// Names of the subassemblies; without a name, the names of their parts.
         names: [String; 2],
     },
@@ -61,7 +61,7 @@ pub enum AssemblyError {
     },
     /// None or all of the parts are to be removed.
     #[error("cannot remove {count} of {of} parts; give at least one part, and fewer than all")]
-    Removal {
+    InvalidRemoval {
         /// Number of parts given.
         count: usize,
         /// Number of parts of the assembly.
@@ -69,7 +69,7 @@ pub enum AssemblyError {
     },
     /// A fixed part is to be removed.
     #[error("part {name} is both fixed and to be removed; drop one of the two options")]
-    Fixed {
+    FixedAndRemoved {
         /// Name of the part.
         name: String,
     },
@@ -87,13 +87,13 @@ pub enum AssemblyError {
     },
     /// An angle is out of range.
     #[error("angle of {degrees} degrees is out of range; accepted: at least 0 and less than 180")]
-    Angle {
+    InvalidAngle {
         /// The given angle in degrees.
         degrees: f64,
     },
     /// A length or factor is negative, not finite or too large.
     #[error("invalid {what} {value:?}; accepted: finite, not negative, below 1.6e60")]
-    Length {
+    InvalidValue {
         /// Purpose of the value.
         what: &'static str,
         /// The given value.
@@ -103,7 +103,7 @@ pub enum AssemblyError {
     #[error(
         "direction {direction:?} is zero, not finite or out of range; give a finite vector that is not zero"
     )]
-    Direction {
+    InvalidDirection {
         /// The given direction.
         direction: [f64; 3],
     },
@@ -118,7 +118,7 @@ pub enum AssemblyError {
     /// Free directions are requested of two parts that cannot be answered exactly, for example because they
     /// overlap.
     #[error("cannot compute the free directions of {a} and {b}: {why}")]
-    NoDirections {
+    DirectionsUnavailable {
         /// Name of a part of the moving group.
         a: String,
         /// Name of one of the other parts.

@@ -5,8 +5,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use colltrans::free::{FreeDirections, FreeError, FreeOptions};
 use colltrans::record::FreeRecord;
+use colltrans::removal::directions::{FreeDirections, FreeError, FreeOptions};
 use colltrans::{Pose, Solid};
 
 use crate::bodies::Bodies;
@@ -14,22 +14,22 @@ use crate::error::AssemblyError;
 
 /// A group and the other parts, each combined into one solid.
 #[derive(Debug, Clone)]
-pub struct Removal {
+pub struct RemovalPair {
     solids: [Solid; 2],
     /// For each solid, its parts with the index of their first facet.
     parts: [Vec<(usize, u32)>; 2],
 }
 
-impl Removal {
+impl RemovalPair {
     /// Combines a group and all parts outside of it.
     ///
     /// # Errors
-    /// Returns an error if the group is empty or contains all parts, or if a pair has a minimum gap, is ignored, or
-    /// overlaps.
+    /// Returns an error if the group is empty or contains all parts, if a minimum gap is set, or if a part is not
+    /// closed. A pair that is ignored, has a fit of its own, or overlaps at the start is an error too.
     pub fn new(bodies: &Bodies, group: &[usize]) -> Result<Self, AssemblyError> {
         let others: Vec<usize> = (0..bodies.len()).filter(|k| !group.contains(k)).collect();
         if group.is_empty() || others.is_empty() {
-            return Err(AssemblyError::Removal { count: group.len(), of: bodies.len() });
+            return Err(AssemblyError::InvalidRemoval { count: group.len(), of: bodies.len() });
         }
         Self::between(bodies, group, &others)
     }
@@ -42,10 +42,10 @@ impl Removal {
     ) -> Result<Self, AssemblyError> {
         for &a in group {
             for &b in others {
-                bodies.check_plain([a, b])?;
+                bodies.check_without_exceptions([a, b])?;
             }
         }
-        let of = |parts: &[usize]| bodies.joined(parts);
+        let of = |parts: &[usize]| bodies.joined_solid(parts);
         let ((moving, own), (fixed, rest)) = (of(group)?, of(others)?);
         Ok(Self { solids: [moving, fixed], parts: [own, rest] })
     }
@@ -54,29 +54,28 @@ impl Removal {
     ///
     /// # Errors
     /// Returns the errors of [`FreeDirections::of`].
-    pub fn directions(
+    pub fn free_directions(
         &self,
         options: FreeOptions,
         cancel: &AtomicBool,
     ) -> Result<FreeDirections<'_>, AssemblyError> {
         let [a, b] = self.solids.each_ref().map(|solid| solid.at(Pose::IDENTITY));
-        FreeDirections::of_unless(&a, &b, options.with_tolerance(0.0), cancel).map_err(|error| {
-            match error {
+        FreeDirections::compute_unless_cancelled(&a, &b, options.with_tolerance(0.0), cancel)
+            .map_err(|error| match error {
                 FreeError::Cancelled => AssemblyError::Cancelled,
                 other => AssemblyError::Free(other),
-            }
-        })
+            })
     }
 
     /// Returns the JSON record of the free directions. It contains part names for sides with several parts.
-    pub fn record(&self, bodies: &Bodies, free: &FreeDirections) -> FreeRecord {
+    pub fn to_record(&self, bodies: &Bodies, free: &FreeDirections) -> FreeRecord {
         let several = self.parts.each_ref().map(|parts| parts.len() > 1);
         let name = |part: usize| bodies.assembly().parts()[part].name().to_owned();
         let names = |triangles: [u32; 2]| {
-            let parts = self.parts(triangles);
+            let parts = self.parts_of_triangles(triangles);
             [0, 1].map(|k| several[k].then(|| name(parts[k])))
         };
-        let mut record = FreeRecord::of(free, names);
+        let mut record = FreeRecord::from_directions(free, names);
         record.tolerance = Some(bodies.fit().tolerance());
         record
     }
@@ -87,7 +86,7 @@ impl Removal {
     }
 
     /// Returns the parts to which the two triangles of an answer belong.
-    pub fn parts(&self, triangles: [u32; 2]) -> [usize; 2] {
+    pub fn parts_of_triangles(&self, triangles: [u32; 2]) -> [usize; 2] {
         [0, 1].map(|k| {
             let facet = self.solids[k].facet_indices()[triangles[k] as usize].index() as u32;
             let after = self.parts[k].partition_point(|&(_, first)| first <= facet);

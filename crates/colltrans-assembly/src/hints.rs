@@ -15,7 +15,7 @@ use glam::DVec3;
 
 use crate::bodies::Bodies;
 use crate::boxes::BoxTree;
-use crate::likes::{common_name, likes};
+use crate::identical::{common_name, first_identical_parts};
 use crate::part::{Assembly, Part};
 use crate::start::{Overlap, Start};
 
@@ -48,7 +48,7 @@ pub struct Hint {
     /// Indices of the parts, in increasing order.
     pub parts: Vec<usize>,
     /// Description, with a suggestion where there is one.
-    pub words: String,
+    pub description: String,
 }
 
 /// Kind of a hint.
@@ -74,9 +74,9 @@ impl HintKind {
 }
 
 /// Returns all hints: identical parts first, the largest group first.
-pub fn hints(bodies: &Bodies, start: &Start) -> Vec<Hint> {
+pub fn find_hints(bodies: &Bodies, start: &Start) -> Vec<Hint> {
     let assembly = bodies.assembly();
-    let likes = likes(assembly);
+    let likes = first_identical_parts(assembly);
     let mut all = identical_parts_hints(assembly, &likes);
     let frames = frame_hint(bodies, start, &likes);
     let overlaps = frames.as_ref().is_some_and(|hint| hint.parts.len() == assembly.parts().len());
@@ -94,12 +94,12 @@ fn identical_parts_hints(assembly: &Assembly, likes: &[usize]) -> Vec<Hint> {
     let mut groups: Vec<Vec<usize>> = all.filter(|group: &Vec<usize>| group.len() > 1).collect();
     groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
     let hint = |parts: Vec<usize>| {
-        let names = assembly.names(&parts);
+        let names = assembly.part_names(&parts);
         let words = match common_name(&names) {
             Some(name) => format!("{} x {name} are identical", parts.len()),
             None => format!("{} are identical", first_named(&names, MAX_NAMED)),
         };
-        Hint { kind: HintKind::Identical, parts, words }
+        Hint { kind: HintKind::Identical, parts, description: words }
     };
     groups.into_iter().map(hint).collect()
 }
@@ -111,16 +111,16 @@ fn frame_hint(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
     let same = |a: &usize, b: &usize| {
         let [p, q] = [a, b].map(|k| parts[*k].bounds());
         let off = (p.low - q.low).abs().max((p.high - q.high).abs()).max_element();
-        likes[*a] == likes[*b] && off <= COINCIDENT * p.size().max_element()
+        likes[*a] == likes[*b] && off <= COINCIDENT * p.side_lengths().max_element()
     };
     // The low corners of coinciding parts coincide, so only parts with nearby corners are compared.
-    let corner = |k: usize| Aabb::of_points([parts[k].bounds().low]);
+    let corner = |k: usize| Aabb::from_points([parts[k].bounds().low]);
     let corners = BoxTree::new((0..parts.len()).map(corner));
     let has_twin = |b: &usize| {
-        let reach = 2.0 * COINCIDENT * parts[*b].bounds().size().max_element();
-        let (near, found) = (corner(*b).grown(reach), Cell::new(false));
+        let reach = 2.0 * COINCIDENT * parts[*b].bounds().side_lengths().max_element();
+        let (near, found) = (corner(*b).expanded(reach), Cell::new(false));
         corners.visit(
-            |corner| !found.get() && corner.meets(&near),
+            |corner| !found.get() && corner.intersects(&near),
             |_, a| found.set(found.get() || a < *b && same(&a, b)),
         );
         found.get()
@@ -131,11 +131,11 @@ fn frame_hint(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
         let first = (0..twin).find(|a| same(a, &twin)).unwrap_or(twin);
         let mut group = vec![first];
         group.extend(twins.into_iter().filter(|k| same(&first, k)));
-        let names = first_named(&assembly.names(&group), MAX_NAMED);
+        let names = first_named(&assembly.part_names(&group), MAX_NAMED);
         let words = format!(
             "{names} are one body in one place: parts seem to be in frames of their own; {advice}"
         );
-        return Some(Hint { kind: HintKind::Frames, parts: group, words });
+        return Some(Hint { kind: HintKind::Frames, parts: group, description: words });
     }
     let is_near = |part: &&Part| {
         let Aabb { low, high } = part.bounds();
@@ -151,7 +151,7 @@ fn frame_hint(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
     odd.then(|| Hint {
         kind: HintKind::Frames,
         parts: (0..parts.len()).collect(),
-        words: format!(
+        description: format!(
             "{deep} of {pairs} pairs of parts overlap deeply around the origin: parts seem to be in frames of their \
              own; {advice}"
         ),
@@ -163,13 +163,13 @@ fn frame_hint(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
 fn unit_hint(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
     let parts = assembly.parts();
     let hint_of_small = |small: Vec<usize>, factor: f64, why: &str| {
-        let names = assembly.names(&small);
+        let names = assembly.part_names(&small);
         let words = format!(
             "{} may be in another unit, {factor} times too small: {why}; --scale {}={factor} corrects it",
             first_named(&names, MAX_NAMED),
             names[0]
         );
-        Hint { kind: HintKind::Units, parts: small, words }
+        Hint { kind: HintKind::Units, parts: small, description: words }
     };
     // In a source in metres, such as URDF, the larger parts have the wrong unit.
     let is_in_metres = assembly.unit() == Some("m");
@@ -188,7 +188,7 @@ fn unit_hint(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
         }
     }
     let mut sizes: Vec<(f64, usize)> = (0..parts.len())
-        .map(|k| (parts[k].bounds().size().max_element(), k))
+        .map(|k| (parts[k].bounds().side_lengths().max_element(), k))
         .filter(|(size, _)| *size > 0.0)
         .collect();
     sizes.sort_by(|x, y| x.0.total_cmp(&y.0));
@@ -210,7 +210,7 @@ fn unit_hint(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
 
 /// Returns the hint that parts of a source in metres have their coordinates in millimetres.
 fn millimetre_hint(assembly: &Assembly, large: Vec<usize>) -> Hint {
-    let names = assembly.names(&large);
+    let names = assembly.part_names(&large);
     let scales: Vec<String> =
         names.iter().take(MAX_NAMED).map(|name| format!("--scale {name}=0.001")).collect();
     let words = format!(
@@ -218,7 +218,7 @@ fn millimetre_hint(assembly: &Assembly, large: Vec<usize>) -> Hint {
         first_named(&names, MAX_NAMED),
         scales.join(" ")
     );
-    Hint { kind: HintKind::Units, parts: large, words }
+    Hint { kind: HintKind::Units, parts: large, description: words }
 }
 
 /// Checks whether one solid has the shape of another one scaled by `factor`. Compares the numbers of vertices

@@ -12,7 +12,7 @@ const DISTINCT: f64 = 1e-3;
 
 /// Returns the unit principal axes whose eigenvalues are distinct: none for a cube, one for a cylinder, else
 /// three.
-pub fn axes(solid: &Solid) -> Vec<DVec3> {
+pub fn principal_axes(solid: &Solid) -> Vec<DVec3> {
     let (values, vectors) = eigen_decomposition(second_moments(solid));
     let largest = values.abs().max_element();
     let are_distinct = |i: usize, j: usize| (values[i] - values[j]).abs() > DISTINCT * largest;
@@ -30,7 +30,7 @@ const MIN_ASYMMETRY: f64 = 0.03;
 /// Returns `None` if the axes or their directions are not clear, for example for solids with a plane of
 /// symmetry.
 pub fn is_right_handed(solid: &Solid) -> Option<bool> {
-    let (center, _) = center(solid)?;
+    let (center, _) = volume_center(solid)?;
     let (values, vectors) = eigen_decomposition(second_moments(solid));
     let mut order = [0, 1, 2];
     order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
@@ -59,7 +59,7 @@ pub fn is_right_handed(solid: &Solid) -> Option<bool> {
 
 /// Returns the principal second moments of the volume about its centre, in increasing order, divided by the
 /// volume.
-pub fn moments(solid: &Solid) -> DVec3 {
+pub fn principal_moments(solid: &Solid) -> DVec3 {
     let mut values = eigen_decomposition(second_moments(solid)).0.to_array();
     values.sort_by(f64::total_cmp);
     DVec3::from_array(values)
@@ -71,7 +71,7 @@ pub fn moments(solid: &Solid) -> DVec3 {
 /// Error bound: each of `n` terms is a product of three lengths with ten roundings. Within the sum, its error
 /// is at most `(n + 10) u` times the product of these lengths. The error of its moment has one of the lengths
 /// as a further factor.
-pub fn center(solid: &Solid) -> Option<(DVec3, f64)> {
+pub fn volume_center(solid: &Solid) -> Option<(DVec3, f64)> {
     const U: f64 = f64::EPSILON / 2.0;
     let Aabb { low, high } = solid.bounds();
     let origin = (low + high) * 0.5;
@@ -148,7 +148,7 @@ mod tests {
     use colltrans_testkit::shapes::cuboid;
 
     use super::*;
-    use crate::sphere::angle;
+    use crate::sphere::angle_between;
 
     #[test]
     fn principal_axes_follow_rotation_and_cube_has_none() {
@@ -157,15 +157,15 @@ mod tests {
             let rotation = random.rotation();
             let at = DVec3::new(3.0, -2.0, 7.0);
             let mesh = cuboid(DVec3::new(1.0, 2.0, 3.5)).mapped(|v| rotation * v + at);
-            let axes = axes(&Solid::from_mesh(&mesh.vertices, &mesh.faces).unwrap());
+            let axes = principal_axes(&Solid::from_mesh(&mesh.vertices, &mesh.faces).unwrap());
             assert_eq!(axes.len(), 3);
             for axis in DVec3::AXES.map(|x| rotation * x) {
-                let near = |a: &DVec3| angle(*a, axis).min(angle(*a, -axis)) < 1e-9;
+                let near = |a: &DVec3| angle_between(*a, axis).min(angle_between(*a, -axis)) < 1e-9;
                 assert_eq!(axes.iter().filter(|a| near(a)).count(), 1);
             }
         }
         let cube = cuboid(DVec3::ONE);
         assert_eq!(is_right_handed(&Solid::from_mesh(&cube.vertices, &cube.faces).unwrap()), None);
-        assert!(axes(&Solid::from_mesh(&cube.vertices, &cube.faces).unwrap()).is_empty());
+        assert!(principal_axes(&Solid::from_mesh(&cube.vertices, &cube.faces).unwrap()).is_empty());
     }
 }

@@ -3,7 +3,8 @@
 //! Two facets are in contact if their normals are nearly opposite and they lie within `reach` of each other somewhere
 //! in their common projection along the first normal. Both sides of a curved fit are tessellated differently;
 //! therefore the normals need only be nearly opposite, and the reach is the tolerance. Coplanar facets are combined
-//! into faces (module `face`). The intersection of two coplanar faces is computed by a sweep.
+//! into faces (module `face`). The intersection of two coplanar faces of many facets is computed by a sweep, that of
+//! other faces from their pairs of facets.
 //!
 //! The area of a contact is the sum of clipped pieces, and its rounding error is bounded (`area_error_bound`). The
 //! decision whether facets are in contact, within 25 degrees and `reach`, is subject to rounding.
@@ -17,15 +18,15 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::bodies::Bodies;
-use crate::boxes::{BoxTree, span};
+use crate::boxes::{BoxTree, value_range};
 use crate::error::AssemblyError;
 use crate::watch::{Stage, Watch};
 use colltrans::Aabb;
 
 use face::{Face, Swept, twice_area};
 
-/// Minimum cosine between a normal and the reversed other one in a contact: 25 degrees, a step of a round of 14
-/// sides.
+/// Minimum cosine between a normal and the reversed other one in a contact: 25 degrees, about the angle between
+/// neighbouring facets of a cylinder with 14 sides.
 const MIN_OPPOSITE_COSINE: f64 = 0.906;
 
 /// Two flat faces in contact.
@@ -34,7 +35,7 @@ pub struct Patch {
     /// Unit normal of the first part's face. It points from the first part to the second.
     pub normal: DVec3,
     /// Reversed unit normal of the second part's face. It points from the first part to the second.
-    pub other: DVec3,
+    pub other_normal: DVec3,
     /// Area of the common projection along `normal`, of the facets in contact.
     pub area: f64,
     /// Bound on the rounding error of `area`.
@@ -67,14 +68,14 @@ impl Liaison {
     }
 
     /// Returns the centroid of the contact, weighted by area.
-    pub fn center(&self) -> DVec3 {
+    pub fn centroid(&self) -> DVec3 {
         let sum: DVec3 = self.patches.iter().map(|p| p.center * p.area).sum();
         sum / self.area()
     }
 }
 
 /// Returns the maximum distance of surfaces in contact: the tolerance, or the default tolerance if that is larger.
-pub fn reach(bodies: &Bodies) -> f64 {
+pub fn contact_reach(bodies: &Bodies) -> f64 {
     bodies.fit().tolerance().max(crate::Fit::negligible(bodies.assembly()))
 }
 
@@ -82,15 +83,15 @@ pub fn reach(bodies: &Bodies) -> f64 {
 ///
 /// # Errors
 /// Returns an error if the run is cancelled or the boxes of too many parts overlap.
-pub fn liaisons(bodies: &Bodies, watch: Watch) -> Result<Vec<Liaison>, AssemblyError> {
-    let reach = reach(bodies);
-    let pairs = bodies.neighbours(reach)?;
-    let tally = watch.stage(Stage::Liaisons, pairs.len());
+pub fn find_liaisons(bodies: &Bodies, watch: Watch) -> Result<Vec<Liaison>, AssemblyError> {
+    let reach = contact_reach(bodies);
+    let pairs = bodies.neighbouring_pairs(reach)?;
+    let tally = watch.start_stage(Stage::Liaisons, pairs.len());
     let parts = bodies.assembly().parts();
     let examine = |&[a, b]: &[usize; 2]| {
         let patches = contact_patches(parts[a].solid(), parts[b].solid(), reach);
         let found = (!patches.is_empty()).then_some(Liaison { parts: [a, b], patches });
-        tally.step().map(|()| found)
+        tally.finish_item().map(|()| found)
     };
     let found: Result<Vec<Option<Liaison>>, AssemblyError> =
         pairs.par_iter().map(examine).collect();
@@ -129,12 +130,12 @@ pub(crate) fn footprint_corners(a: &Solid, b: &Solid, reach: f64, down: DVec3) -
 
 /// Calls a function with all pairs of faces that face each other and are near.
 fn each_facing_pair(a: &Solid, b: &Solid, reach: f64, call: &mut impl FnMut([&Face; 2])) {
-    let (p, q) = (a.bounds().grown(reach), b.bounds().grown(reach));
+    let (p, q) = (a.bounds().expanded(reach), b.bounds().expanded(reach));
     let region = Aabb { low: p.low.max(q.low), high: p.high.min(q.high) };
     let [first, second] = [a, b].map(|solid| Face::all_in(solid, &region, reach));
     let tree = BoxTree::new(second.iter().map(|face| face.bounds));
     for face in &first {
-        for k in tree.meeting(&face.bounds.grown(reach)) {
+        for k in tree.intersecting(&face.bounds.expanded(reach)) {
             if -face.normal.dot(second[k].normal) >= MIN_OPPOSITE_COSINE {
                 call([face, &second[k]]);
             }
@@ -157,7 +158,7 @@ fn each_common_piece(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piec
     if many {
         let height = |at: DVec3| (q.facets[0][0] - at).dot(q.normal) / p.normal.dot(q.normal);
         let heights = p.corners().map(height);
-        let [low, high] = span(heights);
+        let [low, high] = value_range(heights);
         if low > reach || high < -reach {
             return 0.0;
         }
@@ -165,7 +166,7 @@ fn each_common_piece(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piec
             return each_swept_piece(p, q, &mut clipping, call);
         }
     }
-    let tree = many.then(|| BoxTree::new(q.facets.iter().map(|t| Aabb::of_points(*t))));
+    let tree = many.then(|| BoxTree::new(q.facets.iter().map(|t| Aabb::from_points(*t))));
     for first in &p.facets {
         let Some(plane) = Plane::from_facet(first) else { continue };
         let mut examine = |second: &Triangle| {
@@ -175,7 +176,7 @@ fn each_common_piece(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piec
         };
         match &tree {
             Some(tree) => {
-                let near = tree.meeting(&Aabb::of_points(*first).grown(reach));
+                let near = tree.intersecting(&Aabb::from_points(*first).expanded(reach));
                 for k in near {
                     examine(&q.facets[k]);
                 }
@@ -195,7 +196,7 @@ fn each_swept_piece(
     call: &mut impl FnMut(&Piece),
 ) -> f64 {
     let Some(plane) = Plane::from_facet(&p.facets[0]) else { return 0.0 };
-    let range = |face: &Face| span(face.corners().map(|at| plane.plane_coordinates(at).x));
+    let range = |face: &Face| value_range(face.corners().map(|at| plane.plane_coordinates(at).x));
     let ([low, high], [least, most]) = (range(p), range(q));
     let range = [low.max(least), high.min(most)];
     let [first, second] = [(p, 1.0), (q, -1.0)]
@@ -267,7 +268,7 @@ impl<'t> Plane<'t> {
         // Height of the second facet's plane above the first one.
         let height = |s: &DVec2| (other[0] - piece.world_position(*s)).dot(m) / n.dot(m);
         let heights = piece.shadow.iter().map(height);
-        let [low, high] = span(heights);
+        let [low, high] = value_range(heights);
         let off = self.coordinate_error(self.facet.iter().chain(other).copied());
         piece.error = area_error_bound(off, [perimeter(&self.corners), perimeter(&seen)]);
         (low <= reach && high >= -reach).then_some(piece)
@@ -309,7 +310,7 @@ impl Piece<'_> {
 
 impl Patch {
     const fn empty(normal: DVec3, other: DVec3) -> Self {
-        Self { normal, other, area: 0.0, area_error: 0.0, center: DVec3::ZERO }
+        Self { normal, other_normal: other, area: 0.0, area_error: 0.0, center: DVec3::ZERO }
     }
 
     /// Adds a piece. Until [`finished`](Self::finished), the centre is multiplied by the area.

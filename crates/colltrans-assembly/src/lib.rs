@@ -4,11 +4,12 @@
 //! Stages of a run, performed by one [`Question`]:
 //! - [`Assembly`] and [`Fit`] -> [`Bodies`] (queries; [`roles`], [`threads`]) -> [`start`], [`suggest`] (overlaps)
 //! - [`hints`], [`liaisons`] (contacts), [`candidates`] (directions, also of [`cylinders`] and [`inertia`])
-//! - [`matrix`], [`rooms`] (who stops whom) -> [`blocking`] (graph, [`constraints`]) -> [`plan`] ([`likes`]), [`map`]
+//! - [`matrix`], [`rooms`] (blockers and free travel) -> [`blocking`] (graph, [`constraints`]) -> [`plan`] ([`likes`]),
+//!   [`map`]
 //! - [`record`] (JSON) and [`report`] (pictures, HTML, animation; feature `report`)
 //!
 //! Lengths are in the unit of the files. Results do not depend on the number of threads. One matrix serves all states
-//! of a plan, because parts do not move until they leave. Memory: 100 bytes for each pair and direction with a
+//! of a plan, because parts do not move until they leave. Memory: 130 bytes for each ordered pair and direction with a
 //! contact, and on each thread up to 50 kB for each pair with cached facets.
 
 mod bodies;
@@ -30,9 +31,9 @@ pub mod constraints;
 pub mod cylinders;
 pub mod free;
 pub mod hints;
+pub mod identical;
 pub mod inertia;
 pub mod liaisons;
-pub mod likes;
 pub mod map;
 pub mod matrix;
 pub mod plan;
@@ -40,16 +41,16 @@ pub mod record;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod roles;
-pub mod rooms;
 mod slabs;
 pub mod sphere;
 pub mod start;
 pub mod suggest;
 pub mod threads;
+pub mod travel;
 pub mod units;
 
-pub use bodies::{Bodies, Fit, Room, Stop};
+pub use bodies::{Bodies, Fit, FreeTravel, Stop};
 pub use error::AssemblyError;
-pub use findings::{Findings, Question};
+pub use findings::{Analysis, AnalysisRequest};
 pub use part::{Assembly, Ignored, Part, Piece};
 pub use watch::{Stage, Watch};

@@ -26,15 +26,15 @@ use rayon::prelude::*;
 
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
-use crate::rooms::{PartRoom, room_of};
-use crate::sphere::{Sphere, angle};
+use crate::sphere::{Sphere, angle_between};
+use crate::travel::{PartTravel, travel_of_group};
 use crate::watch::{Stage, Watch};
 
 pub use cover::Cover;
 #[cfg(feature = "report")]
-pub use draw::{png, svg};
+pub use draw::{render_png, render_svg};
 pub use regions::Region;
-pub(crate) use removal_direction::way_out;
+pub(crate) use removal_direction::find_removal_direction;
 
 /// Options of a removal map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,7 +83,7 @@ pub struct RemovalMap {
     /// The sampled directions and their triangles.
     pub sphere: Sphere,
     /// The free travel along each direction of the sphere.
-    pub rooms: Vec<PartRoom>,
+    pub travels: Vec<PartTravel>,
     /// The exact free directions, or the reason why there are only samples.
     pub cover: Result<Cover, String>,
     /// Connected sets of free directions, largest first; those of the cover if it exists, otherwise sampled.
@@ -98,8 +98,8 @@ pub struct RemovalMap {
 impl RemovalMap {
     /// Computes the removal map of a group against all parts outside of it.
     ///
-    /// The cover requires closed parts. There is none if a pair is ignored, has a minimum gap, or overlaps at the
-    /// start. `candidates` are directions that are tested in addition if there is no cover.
+    /// The cover requires closed parts. There is none with a minimum gap, or if a pair is ignored, has a fit of its
+    /// own, or overlaps at the start. `candidates` are directions that are tested in addition if there is no cover.
     ///
     /// # Errors
     /// Returns an error if the run is cancelled.
@@ -122,7 +122,7 @@ impl RemovalMap {
         if let Ok(exact) = &cover {
             let (regions, isolated) = exact.report_regions(smallest);
             let Mapper { sphere, rooms, .. } = mapper;
-            return Ok(Self { group, sphere, rooms, cover, regions, isolated, size });
+            return Ok(Self { group, sphere, travels: rooms, cover, regions, isolated, size });
         }
         let free = mapper.test_candidates(candidates)?;
         mapper.refine_around(&free)?;
@@ -138,11 +138,11 @@ impl RemovalMap {
         };
         let mut isolated: Vec<DVec3> = free.into_iter().filter(open).collect();
         for d in single {
-            if isolated.iter().all(|known| angle(*known, d) > options.border) {
+            if isolated.iter().all(|known| angle_between(*known, d) > options.border) {
                 isolated.push(d);
             }
         }
-        Ok(Self { group, sphere, rooms, cover, regions, isolated, size })
+        Ok(Self { group, sphere, travels: rooms, cover, regions, isolated, size })
     }
 
     /// Returns the fraction of the sphere that is free: a lower bound with a cover, an estimate from samples without
@@ -168,7 +168,7 @@ struct Mapper<'a> {
     options: MapOptions,
     watch: Watch<'a>,
     sphere: Sphere,
-    rooms: Vec<PartRoom>,
+    rooms: Vec<PartTravel>,
 }
 
 impl<'a> Mapper<'a> {
@@ -190,12 +190,12 @@ impl<'a> Mapper<'a> {
         Ok(())
     }
 
-    fn sample_rooms(&self, directions: &[DVec3]) -> Result<Vec<PartRoom>, AssemblyError> {
-        let tally = self.watch.stage(Stage::Map, directions.len());
+    fn sample_rooms(&self, directions: &[DVec3]) -> Result<Vec<PartTravel>, AssemblyError> {
+        let tally = self.watch.start_stage(Stage::Map, directions.len());
         let examine = |workspace: &mut Workspace, d: &DVec3| {
             let start = self.options.start;
-            let room = room_of(self.bodies, self.group, &self.others, *d, start, workspace);
-            tally.step().map(|()| room)
+            let room = travel_of_group(self.bodies, self.group, &self.others, *d, start, workspace);
+            tally.finish_item().map(|()| room)
         };
         directions.par_iter().map_init(Workspace::default, examine).collect()
     }
@@ -210,7 +210,7 @@ impl<'a> Mapper<'a> {
     fn refine_farthest(&mut self) -> Result<(), AssemblyError> {
         for _ in 0..PEAK_ROUNDS {
             let mut highest = vec![0.0_f64; self.rooms.len()];
-            for t in self.sphere.leaves() {
+            for t in self.sphere.leaf_triangles() {
                 let corners = self.sphere.triangles[t].corners.map(|k| k as usize);
                 let best = corners
                     .map(|k| self.rooms[k].displaced_distance())
@@ -231,7 +231,7 @@ impl<'a> Mapper<'a> {
             let peaks: BTreeSet<u32> = peaks.into_iter().map(|k| k as u32).collect();
             let around =
                 |t: &usize| self.sphere.triangles[*t].corners.iter().any(|k| peaks.contains(k));
-            let cuts: Vec<usize> = self.sphere.leaves().filter(around).collect();
+            let cuts: Vec<usize> = self.sphere.leaf_triangles().filter(around).collect();
             self.cut_triangles(cuts)?;
         }
         Ok(())
@@ -245,7 +245,7 @@ impl<'a> Mapper<'a> {
                 let t = self.sphere.locate(*d).0;
                 let corners = self.sphere.triangles[t].corners;
                 let shut = corners.iter().all(|&k| !self.rooms[k as usize].is_free());
-                (shut && self.sphere.widest(t) > self.options.border).then_some(t)
+                (shut && self.sphere.longest_side(t) > self.options.border).then_some(t)
             };
             let cuts: BTreeSet<usize> = free.iter().filter_map(wanted).collect();
             if cuts.is_empty() {
@@ -261,9 +261,9 @@ impl<'a> Mapper<'a> {
             let mixed = |t: &usize| {
                 let [a, b, c] =
                     self.sphere.triangles[*t].corners.map(|k| self.rooms[k as usize].is_free());
-                (a != b || b != c) && self.sphere.widest(*t) > self.options.border
+                (a != b || b != c) && self.sphere.longest_side(*t) > self.options.border
             };
-            let cuts: Vec<usize> = self.sphere.leaves().filter(mixed).collect();
+            let cuts: Vec<usize> = self.sphere.leaf_triangles().filter(mixed).collect();
             if cuts.is_empty() {
                 return Ok(());
             }
@@ -275,7 +275,7 @@ impl<'a> Mapper<'a> {
         &mut self,
         triangles: impl IntoIterator<Item = usize>,
     ) -> Result<(), AssemblyError> {
-        triangles.into_iter().for_each(|t| self.sphere.cut(t));
+        triangles.into_iter().for_each(|t| self.sphere.subdivide(t));
         self.sample_pending()
     }
 }

@@ -16,11 +16,11 @@ use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::bodies::{Bodies, Room, Stop};
-use crate::boxes::Living;
+use crate::bodies::{Bodies, FreeTravel, Stop};
+use crate::boxes::RemainingBoxes;
 use crate::csv::{Cell, Table};
 use crate::error::AssemblyError;
-use crate::rooms::PartRoom;
+use crate::travel::PartTravel;
 use crate::watch::{Stage, Watch};
 
 /// Maximum number of stored contacts, of 130 bytes each.
@@ -33,7 +33,7 @@ pub(crate) fn direction_bits(d: DVec3) -> [u64; 3] {
 
 /// A contact of two parts along a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Meeting {
+pub struct PairContact {
     /// Index of the moving part.
     pub moving: usize,
     /// Index of the part that blocks it.
@@ -42,22 +42,22 @@ pub struct Meeting {
     pub stop: Option<Stop>,
 }
 
-impl Meeting {
+impl PairContact {
     /// Returns the proven safe travel; 0 if the parts overlap at the start.
-    pub fn distance(&self) -> f64 {
+    pub fn safe_distance(&self) -> f64 {
         self.stop.map_or(0.0, |stop| stop.distance())
     }
 
     /// Returns the travel of the bodies with their tolerance or gap applied. It decides which contact is first.
     pub fn displaced_distance(&self) -> f64 {
-        self.stop.map_or(0.0, |stop| stop.displaced.value)
+        self.stop.map_or(0.0, |stop| stop.shrunk_translation.value)
     }
 
     /// Returns the contact from the view of the other part, which moves along `-d`.
     fn reversed(&self, d: DVec3) -> Self {
         let turn = |s: Stop| Stop {
             normal: -s.normal,
-            point: s.point - d * s.displaced.value,
+            point: s.point - d * s.shrunk_translation.value,
             triangles: [s.triangles[1], s.triangles[0]],
             ..s
         };
@@ -70,18 +70,18 @@ impl Meeting {
 /// In a row of parts every pair meets, so the complete matrix has an entry for every pair. It is computed at first
 /// use ([`complete`](Self::complete)). The queries of a plan about single parts do not need it.
 #[derive(Clone)]
-pub struct Matrix<'a> {
+pub struct ContactMatrix<'a> {
     bodies: &'a Bodies<'a>,
     directions: Vec<DVec3>,
     among: Vec<bool>,
     start: StartOverlap,
     /// For each direction, the contacts sorted by moving and fixed part.
-    complete_meetings: OnceLock<Arc<Vec<Vec<Meeting>>>>,
+    complete_meetings: OnceLock<Arc<Vec<Vec<PairContact>>>>,
     /// The parts of the matrix, for queries on demand.
-    all: OnceLock<Arc<Living>>,
+    all: OnceLock<Arc<RemainingBoxes>>,
 }
 
-impl std::fmt::Debug for Matrix<'_> {
+impl std::fmt::Debug for ContactMatrix<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let Self { directions, among, complete_meetings, .. } = self;
         let mut fields = f.debug_struct("Matrix");
@@ -93,13 +93,13 @@ impl std::fmt::Debug for Matrix<'_> {
     }
 }
 
-impl PartialEq for Matrix<'_> {
+impl PartialEq for ContactMatrix<'_> {
     fn eq(&self, other: &Self) -> bool {
         self.directions == other.directions && self.all_meetings() == other.all_meetings()
     }
 }
 
-impl<'a> Matrix<'a> {
+impl<'a> ContactMatrix<'a> {
     /// Computes the contacts of all ordered pairs of the parts in the mask `among`, along directions of length 1.
     ///
     /// # Errors
@@ -112,7 +112,7 @@ impl<'a> Matrix<'a> {
         watch: Watch,
     ) -> Result<Self, AssemblyError> {
         let matrix = Self::on_demand(bodies, directions, among, start);
-        matrix.complete(watch)?;
+        matrix.compute_all(watch)?;
         Ok(matrix)
     }
 
@@ -138,7 +138,7 @@ impl<'a> Matrix<'a> {
     ///
     /// # Errors
     /// Returns an error if the run is cancelled or more than 2^24 contacts would be stored.
-    pub fn complete(&self, watch: Watch) -> Result<(), AssemblyError> {
+    pub fn compute_all(&self, watch: Watch) -> Result<(), AssemblyError> {
         if self.complete_meetings.get().is_none() {
             let complete_meetings = self.compute_meetings(MAX_MEETINGS, watch)?;
             self.complete_meetings.get_or_init(|| Arc::new(complete_meetings));
@@ -169,7 +169,7 @@ impl<'a> Matrix<'a> {
         parts.iter().all(|&part| self.among[part])
     }
 
-    fn all_meetings(&self) -> &[Vec<Meeting>] {
+    fn all_meetings(&self) -> &[Vec<PairContact>] {
         // Without a watch there is no cancellation. The limit applies only to callers that can receive its error.
         self.complete_meetings.get_or_init(|| {
             Arc::new(self.compute_meetings(usize::MAX, Watch::default()).unwrap_or_default())
@@ -181,7 +181,7 @@ impl<'a> Matrix<'a> {
         &self,
         most: usize,
         watch: Watch,
-    ) -> Result<Vec<Vec<Meeting>>, AssemblyError> {
+    ) -> Result<Vec<Vec<PairContact>>, AssemblyError> {
         let Self { bodies, directions, among, start, .. } = self;
         let index: HashMap<[u64; 3], usize> =
             directions.iter().enumerate().map(|(k, d)| (direction_bits(*d), k)).collect();
@@ -189,7 +189,7 @@ impl<'a> Matrix<'a> {
         let computed: Vec<usize> =
             (0..directions.len()).filter(|&k| opposite(k).is_none_or(|o| o > k)).collect();
         let moving: Vec<usize> = (0..bodies.len()).filter(|&k| among[k]).collect();
-        let tally = watch.stage(Stage::Rooms, computed.len() * moving.len());
+        let tally = watch.start_stage(Stage::Rooms, computed.len() * moving.len());
         let jobs: Vec<(usize, usize)> =
             computed.iter().flat_map(|&k| moving.iter().map(move |&part| (k, part))).collect();
         let count = AtomicUsize::new(0);
@@ -200,9 +200,9 @@ impl<'a> Matrix<'a> {
                 let what = "contacts of pairs of parts along the tested directions";
                 return Err(AssemblyError::TooMany { what, most });
             }
-            tally.step().map(|()| (k, met))
+            tally.finish_item().map(|()| (k, met))
         };
-        let rows: Result<Vec<(usize, Vec<Meeting>)>, AssemblyError> =
+        let rows: Result<Vec<(usize, Vec<PairContact>)>, AssemblyError> =
             jobs.par_iter().map_init(Workspace::default, row).collect();
         let mut all = vec![Vec::new(); directions.len()];
         for (k, met) in rows? {
@@ -212,7 +212,7 @@ impl<'a> Matrix<'a> {
             all[k].extend(met);
         }
         for met in &mut all {
-            met.sort_by_key(|m: &Meeting| (m.moving, m.fixed));
+            met.sort_by_key(|m: &PairContact| (m.moving, m.fixed));
         }
         Ok(all)
     }
@@ -223,42 +223,42 @@ impl<'a> Matrix<'a> {
     }
 
     /// Returns the index of a direction, or `None` if the matrix does not contain it.
-    pub fn position(&self, direction: DVec3) -> Option<usize> {
+    pub fn direction_index(&self, direction: DVec3) -> Option<usize> {
         self.directions.iter().position(|d| direction_bits(*d) == direction_bits(direction))
     }
 
     /// Returns all contacts along a direction, sorted by moving and fixed part. Computes the matrix if necessary.
-    pub fn meetings(&self, direction: usize) -> &[Meeting] {
+    pub fn contacts_along(&self, direction: usize) -> &[PairContact] {
         &self.all_meetings()[direction]
     }
 
     /// Returns the contacts of a moving part along a direction. Computes the matrix if necessary.
-    pub fn of_part(&self, direction: usize, part: usize) -> &[Meeting] {
-        let all = self.meetings(direction);
+    pub fn contacts_of_part(&self, direction: usize, part: usize) -> &[PairContact] {
+        let all = self.contacts_along(direction);
         let from = all.partition_point(|m| m.moving < part);
         let to = all.partition_point(|m| m.moving <= part);
         &all[from..to]
     }
 
-    /// Returns a present part that blocks a part along a direction: any one, found by the order of the search.
-    /// Returns `None` if the part is free.
+    /// Returns any present part that blocks a part along a direction. Returns `None` if the part is free. If several
+    /// parts block it, the result depends on whether the matrix is complete.
     pub(crate) fn find_blocker(
         &self,
         direction: usize,
         part: usize,
-        living: &Living,
+        living: &RemainingBoxes,
         workspace: &mut Workspace,
     ) -> Option<usize> {
         if self.is_complete() {
             return self
-                .of_part(direction, part)
+                .contacts_of_part(direction, part)
                 .iter()
                 .map(|m| m.fixed)
-                .find(|&by| living.has(by));
+                .find(|&by| living.contains(by));
         }
         let (bodies, d) = (self.bodies, self.directions[direction]);
-        let meets = |_, other| bodies.meets([part, other], d, self.start, workspace);
-        bodies.first_ahead(part, d, living, meets)
+        let meets = |_, other| bodies.ever_meets([part, other], d, self.start, workspace);
+        bodies.first_part_ahead(part, d, living, meets)
     }
 
     /// Returns the present parts that block a part along a direction within a length, in increasing order.
@@ -267,16 +267,16 @@ impl<'a> Matrix<'a> {
         direction: usize,
         part: usize,
         length: f64,
-        living: &Living,
+        living: &RemainingBoxes,
     ) -> Vec<usize> {
         let mut found = Vec::new();
         if self.is_complete() {
-            let met = self.of_part(direction, part).iter();
-            let met = met.filter(|m| m.displaced_distance() <= length && living.has(m.fixed));
+            let met = self.contacts_of_part(direction, part).iter();
+            let met = met.filter(|m| m.displaced_distance() <= length && living.contains(m.fixed));
             return met.map(|m| m.fixed).collect();
         }
         let mut workspace = Workspace::default();
-        self.bodies.first_ahead(part, self.directions[direction], living, |bound, other| {
+        self.bodies.first_part_ahead(part, self.directions[direction], living, |bound, other| {
             let near = bound <= length;
             let met =
                 near.then(|| self.pair_meeting(direction, [part, other], &mut workspace)).flatten();
@@ -293,7 +293,7 @@ impl<'a> Matrix<'a> {
         k: usize,
         [a, b]: [usize; 2],
         workspace: &mut Workspace,
-    ) -> Option<Meeting> {
+    ) -> Option<PairContact> {
         let d = self.directions[k];
         // Only the first of two opposite directions is computed.
         let opposite =
@@ -306,34 +306,40 @@ impl<'a> Matrix<'a> {
     }
 
     /// Returns the free travel of a part along a direction, against all other parts of the matrix.
-    pub fn room(&self, direction: usize, part: usize) -> PartRoom {
-        let key = |m: &Meeting| (m.stop.is_some(), m.displaced_distance());
-        let before = |x: &Meeting, y: &Meeting| {
+    pub fn travel_of_part(&self, direction: usize, part: usize) -> PartTravel {
+        let key = |m: &PairContact| (m.stop.is_some(), m.displaced_distance());
+        let before = |x: &PairContact, y: &PairContact| {
             let by = key(x).partial_cmp(&key(y)).unwrap_or(std::cmp::Ordering::Equal);
             by.then(x.fixed.cmp(&y.fixed))
         };
-        let mut first: Option<Meeting> = None;
+        let mut first: Option<PairContact> = None;
         if self.is_complete() {
-            first = self.of_part(direction, part).iter().min_by(|x, y| before(x, y)).copied();
+            first =
+                self.contacts_of_part(direction, part).iter().min_by(|x, y| before(x, y)).copied();
         } else {
-            let all = || Arc::new(self.bodies.living(&self.among));
+            let all = || Arc::new(self.bodies.remaining_parts(&self.among));
             let (living, mut workspace) = (self.all.get_or_init(all), Workspace::default());
-            self.bodies.first_ahead(part, self.directions[direction], living, |bound, other| {
-                if first.is_some_and(|m| bound > m.displaced_distance()) {
-                    return true;
-                }
-                let met = self.pair_meeting(direction, [part, other], &mut workspace);
-                first = first.into_iter().chain(met).min_by(|x, y| before(x, y));
-                false
-            });
+            self.bodies.first_part_ahead(
+                part,
+                self.directions[direction],
+                living,
+                |bound, other| {
+                    if first.is_some_and(|m| bound > m.displaced_distance()) {
+                        return true;
+                    }
+                    let met = self.pair_meeting(direction, [part, other], &mut workspace);
+                    first = first.into_iter().chain(met).min_by(|x, y| before(x, y));
+                    false
+                },
+            );
         }
         match first {
-            None => PartRoom::Free,
-            Some(Meeting { moving: part, fixed: by, stop: None }) => {
-                PartRoom::Overlapping { part, by }
+            None => PartTravel::Free,
+            Some(PairContact { moving: part, fixed: by, stop: None }) => {
+                PartTravel::Overlapping { part, by }
             }
-            Some(Meeting { moving: part, fixed: by, stop: Some(stop) }) => {
-                PartRoom::Blocked { part, by, stop }
+            Some(PairContact { moving: part, fixed: by, stop: Some(stop) }) => {
+                PartTravel::Blocked { part, by, stop }
             }
         }
     }
@@ -348,18 +354,18 @@ impl<'a> Matrix<'a> {
         for (d, met) in self.directions.iter().zip(self.all_meetings()) {
             for m in met {
                 let outcome = if m.stop.is_some() { "blocked" } else { "overlapping" };
-                table.row(&[
+                table.push_row(&[
                     Cell::Number(d.x),
                     Cell::Number(d.y),
                     Cell::Number(d.z),
                     Cell::Text(parts[m.moving].name()),
                     Cell::Text(parts[m.fixed].name()),
                     Cell::Text(outcome),
-                    Cell::Number(m.distance()),
+                    Cell::Number(m.safe_distance()),
                 ]);
             }
         }
-        table.finish()
+        table.into_text()
     }
 }
 
@@ -370,8 +376,8 @@ fn part_meetings(
     among: &[bool],
     start: StartOverlap,
     workspace: &mut Workspace,
-) -> Vec<Meeting> {
-    let ahead = bodies.ahead(part, d).into_iter().filter(|&(_, other)| among[other]);
+) -> Vec<PairContact> {
+    let ahead = bodies.parts_ahead(part, d).into_iter().filter(|&(_, other)| among[other]);
     ahead
         .filter_map(|(_, other)| first_meeting(bodies, [part, other], d, start, workspace))
         .collect()
@@ -383,11 +389,11 @@ fn first_meeting(
     d: DVec3,
     start: StartOverlap,
     workspace: &mut Workspace,
-) -> Option<Meeting> {
-    let stop = match bodies.room([moving, fixed], d, None, start, workspace) {
-        Room::Free => return None,
-        Room::Overlapping => None,
-        Room::Blocked(stop) => Some(stop),
+) -> Option<PairContact> {
+    let stop = match bodies.free_travel([moving, fixed], d, None, start, workspace) {
+        FreeTravel::Free => return None,
+        FreeTravel::Overlapping => None,
+        FreeTravel::Blocked(stop) => Some(stop),
     };
-    Some(Meeting { moving, fixed, stop })
+    Some(PairContact { moving, fixed, stop })
 }

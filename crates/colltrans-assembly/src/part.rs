@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use colltrans::solid::SolidError;
 use colltrans::{Aabb, MAX_MAGNITUDE, Solid};
-use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused};
+use colltrans_mesh::body::{self, BodyError, BodyOptions, Loaded};
 use colltrans_mesh::{Mesh, NumberFormat};
 use glam::{DAffine3, DVec3};
 
-use crate::constraints::{Constraints, Unit};
+use crate::constraints::{Constraints, RigidUnit};
 use crate::error::AssemblyError;
 use crate::roles::{PairFit, Role};
 
@@ -41,7 +41,7 @@ impl Part {
     /// [`Self::defects`].
     ///
     /// # Errors
-    /// [`AssemblyError::NoName`], or [`AssemblyError::Part`] if there are no pieces or their surface is not
+    /// [`AssemblyError::EmptyName`], or [`AssemblyError::Part`] if there are no pieces or their surface is not
     /// that of a solid.
     pub fn new(name: impl Into<String>, pieces: &[Piece]) -> Result<Self, AssemblyError> {
         Self::with_options(name, pieces, &BodyOptions::default())
@@ -59,7 +59,7 @@ impl Part {
     ) -> Result<Self, AssemblyError> {
         let name = name.into();
         if name.trim().is_empty() {
-            return Err(AssemblyError::NoName);
+            return Err(AssemblyError::EmptyName);
         }
         let refused = |source| AssemblyError::Part { part: name.clone(), source };
         let mut defects = Vec::new();
@@ -121,12 +121,12 @@ impl Part {
     }
 
     /// Returns the number of facets in the file.
-    pub const fn facets(&self) -> usize {
+    pub const fn facet_count(&self) -> usize {
         self.facets
     }
 
     /// Checks whether a plan must not move the part.
-    pub const fn fixed(&self) -> bool {
+    pub const fn is_fixed(&self) -> bool {
         self.fixed
     }
 
@@ -205,7 +205,7 @@ impl Piece {
 }
 
 /// Builds the solid of a piece in the world. Faces are reversed if the pose mirrors.
-fn solid_of_piece(piece: &Piece, options: &BodyOptions) -> Result<Loaded<Solid>, Refused> {
+fn solid_of_piece(piece: &Piece, options: &BodyOptions) -> Result<Loaded<Solid>, BodyError> {
     let mut mesh = piece.mesh.clone();
     for vertex in &mut mesh.vertices {
         *vertex = piece.world_from_piece.transform_point3(*vertex);
@@ -244,12 +244,12 @@ impl Assembly {
     /// Creates an assembly of these parts, in this order.
     ///
     /// # Errors
-    /// [`AssemblyError::SameName`] if two parts have the same name.
+    /// [`AssemblyError::DuplicateName`] if two parts have the same name.
     pub fn new(parts: Vec<Part>) -> Result<Self, AssemblyError> {
         let mut seen = HashMap::new();
         for (k, part) in parts.iter().enumerate() {
             if seen.insert(part.name.as_str(), k).is_some() {
-                return Err(AssemblyError::SameName { name: part.name.clone() });
+                return Err(AssemblyError::DuplicateName { name: part.name.clone() });
             }
         }
         Ok(Self { parts, ..Self::default() })
@@ -266,7 +266,7 @@ impl Assembly {
         ignored: Ignored,
     ) -> Result<Self, AssemblyError> {
         for [a, b] in pairs {
-            let (a, b) = (self.index(a.as_ref())?, self.index(b.as_ref())?);
+            let (a, b) = (self.part_index(a.as_ref())?, self.part_index(b.as_ref())?);
             if a == b {
                 return Err(AssemblyError::SamePart { name: self.parts[a].name.clone() });
             }
@@ -283,24 +283,24 @@ impl Assembly {
     /// # Errors
     /// - [`AssemblyError::UnknownPart`]
     /// - [`AssemblyError::SamePart`] if both groups consist of the same single part
-    /// - [`AssemblyError::Length`] if the tolerance is negative, not finite or too large
+    /// - [`AssemblyError::InvalidValue`] if the tolerance is negative, not finite or too large
     /// - [`AssemblyError::NoFit`] without role and tolerance
     /// - [`AssemblyError::NoTolerance`] for a snap fit without tolerance
-    /// - [`AssemblyError::Order`] or [`AssemblyError::Subassemblies`] if glued parts conflict with other
+    /// - [`AssemblyError::CyclicOrder`] or [`AssemblyError::OverlappingSubassemblies`] if glued parts conflict with other
     ///   constraints
     pub fn with_pair<S: AsRef<str>>(
         mut self,
         [first, second]: [&[S]; 2],
         fit: PairFit,
     ) -> Result<Self, AssemblyError> {
-        let (first, second) = (self.group(first)?, self.group(second)?);
+        let (first, second) = (self.parts_named(first)?, self.parts_named(second)?);
         if let ([a], [b]) = (&first[..], &second[..])
             && a == b
         {
             return Err(AssemblyError::SamePart { name: self.parts[*a].name.clone() });
         }
         if let Some(value) = fit.tolerance.filter(|x| !(0.0..=MAX_MAGNITUDE).contains(x)) {
-            return Err(AssemblyError::Length { what: "tolerance", value });
+            return Err(AssemblyError::InvalidValue { what: "tolerance", value });
         }
         let names = || [first[0], second[0]].map(|part| self.parts[part].name.clone());
         if fit == PairFit::default() {
@@ -316,7 +316,7 @@ impl Assembly {
             let pair = [a.min(b), a.max(b)];
             self.pairs.insert(pair, fit);
             if fit.role == Some(Role::Glued) {
-                let unit = Unit { name: None, parts: pair.to_vec(), apart: false };
+                let unit = RigidUnit { name: None, parts: pair.to_vec(), is_subassembly: false };
                 let name = |part: usize| self.parts[part].name();
                 self.constraints.add_unit(unit, name)?;
             }
@@ -330,7 +330,7 @@ impl Assembly {
     /// # Errors
     /// [`AssemblyError::UnknownPart`].
     pub fn with_fixed<S: AsRef<str>>(mut self, names: &[S]) -> Result<Self, AssemblyError> {
-        for part in self.group(names)? {
+        for part in self.parts_named(names)? {
             self.parts[part].fixed = true;
         }
         Ok(self)
@@ -340,13 +340,13 @@ impl Assembly {
     /// parts is still in place. Names are patterns of [`group`](Self::group).
     ///
     /// # Errors
-    /// [`AssemblyError::UnknownPart`], and [`AssemblyError::Order`] if the constraints become cyclic.
+    /// [`AssemblyError::UnknownPart`], and [`AssemblyError::CyclicOrder`] if the constraints become cyclic.
     pub fn with_before<S: AsRef<str>>(
         mut self,
         first: &[S],
         second: &[S],
     ) -> Result<Self, AssemblyError> {
-        let (first, second) = (self.group(first)?, self.group(second)?);
+        let (first, second) = (self.parts_named(first)?, self.parts_named(second)?);
         let name = |part: usize| self.parts[part].name();
         self.constraints.add_before([&first, &second], name)?;
         Ok(self)
@@ -357,7 +357,7 @@ impl Assembly {
     ///
     /// # Errors
     /// [`AssemblyError::UnknownPart`], [`AssemblyError::TooFew`] for fewer than two parts,
-    /// [`AssemblyError::Subassemblies`], and [`AssemblyError::Order`] if the constraints become cyclic.
+    /// [`AssemblyError::OverlappingSubassemblies`], and [`AssemblyError::CyclicOrder`] if the constraints become cyclic.
     pub fn with_together<S: AsRef<str>>(self, names: &[S]) -> Result<Self, AssemblyError> {
         self.with_unit_of(None, names, false)
     }
@@ -366,7 +366,7 @@ impl Assembly {
     /// Names are patterns of [`group`](Self::group).
     ///
     /// # Errors
-    /// Those of [`Self::with_together`], and [`AssemblyError::NoName`] for an empty name.
+    /// Those of [`Self::with_together`], and [`AssemblyError::EmptyName`] for an empty name.
     pub fn with_subassembly<S: AsRef<str>>(
         self,
         name: impl Into<String>,
@@ -374,7 +374,7 @@ impl Assembly {
     ) -> Result<Self, AssemblyError> {
         let name = name.into();
         if name.trim().is_empty() {
-            return Err(AssemblyError::NoName);
+            return Err(AssemblyError::EmptyName);
         }
         self.with_unit_of(Some(name), parts, true)
     }
@@ -387,13 +387,13 @@ impl Assembly {
         parts: &[S],
         apart: bool,
     ) -> Result<Self, AssemblyError> {
-        let parts = self.group(parts)?;
+        let parts = self.parts_named(parts)?;
         if parts.len() < 2 {
             let what = if apart { "a subassembly" } else { "a group that stays together" };
             return Err(AssemblyError::TooFew { what, count: parts.len() });
         }
         let named = |part: usize| self.parts[part].name();
-        self.constraints.add_unit(Unit { name, parts, apart }, named)?;
+        self.constraints.add_unit(RigidUnit { name, parts, is_subassembly: apart }, named)?;
         Ok(self)
     }
 
@@ -401,16 +401,16 @@ impl Assembly {
     /// all directions within an angle of `within` degrees of it.
     ///
     /// # Errors
-    /// [`AssemblyError::UnknownPart`], [`AssemblyError::Direction`] for a direction without length, and
-    /// [`AssemblyError::Angle`] unless the angle is at least 0 and less than 180 degrees.
+    /// [`AssemblyError::UnknownPart`], [`AssemblyError::InvalidDirection`] for a direction without length, and
+    /// [`AssemblyError::InvalidAngle`] unless the angle is at least 0 and less than 180 degrees.
     pub fn with_never<S: AsRef<str>>(
         mut self,
         names: &[S],
         direction: DVec3,
         within: f64,
     ) -> Result<Self, AssemblyError> {
-        for part in self.group(names)? {
-            self.constraints.add_never(part, direction, within)?;
+        for part in self.parts_named(names)? {
+            self.constraints.add_forbidden_direction(part, direction, within)?;
         }
         Ok(self)
     }
@@ -466,7 +466,7 @@ impl Assembly {
     }
 
     /// Returns which contacts of two parts are ignored; `None` if all of them count.
-    pub fn ignored(&self, a: usize, b: usize) -> Option<Ignored> {
+    pub fn ignored_contacts(&self, a: usize, b: usize) -> Option<Ignored> {
         self.ignored.get(&[a.min(b), a.max(b)]).copied()
     }
 
@@ -485,7 +485,7 @@ impl Assembly {
     ///
     /// # Errors
     /// [`AssemblyError::UnknownPart`] if a name or pattern matches no part.
-    pub fn group<S: AsRef<str>>(&self, names: &[S]) -> Result<Vec<usize>, AssemblyError> {
+    pub fn parts_named<S: AsRef<str>>(&self, names: &[S]) -> Result<Vec<usize>, AssemblyError> {
         let mut group = Vec::new();
         for name in names.iter().map(|name| name.as_ref().trim()) {
             let matching = match name.strip_suffix('*') {
@@ -493,7 +493,7 @@ impl Assembly {
                     let parts = self.parts.iter().enumerate();
                     parts.filter(|(_, p)| p.name.starts_with(prefix)).map(|(k, _)| k).collect()
                 }
-                _ => vec![self.index(name)?],
+                _ => vec![self.part_index(name)?],
             };
             if matching.is_empty() {
                 return Err(AssemblyError::UnknownPart { name: name.into(), near: None });
@@ -506,12 +506,12 @@ impl Assembly {
     }
 
     /// Returns the role and tolerance given for two parts; `None` if none are given.
-    pub fn pair(&self, a: usize, b: usize) -> Option<PairFit> {
+    pub fn pair_fit(&self, a: usize, b: usize) -> Option<PairFit> {
         self.pairs.get(&[a.min(b), a.max(b)]).copied()
     }
 
     /// Iterates over the pairs with a role or tolerance of their own, the smaller index first.
-    pub fn pairs(&self) -> impl Iterator<Item = ([usize; 2], PairFit)> {
+    pub fn pair_fits(&self) -> impl Iterator<Item = ([usize; 2], PairFit)> {
         self.pairs.iter().map(|(pair, fit)| (*pair, *fit))
     }
 
@@ -519,7 +519,7 @@ impl Assembly {
     ///
     /// # Errors
     /// [`AssemblyError::UnknownPart`], with the name that has the longest common prefix.
-    pub fn index(&self, name: &str) -> Result<usize, AssemblyError> {
+    pub fn part_index(&self, name: &str) -> Result<usize, AssemblyError> {
         let found = self.parts.iter().position(|p| p.name == name);
         found.ok_or_else(|| {
             let shared = |p: &&Part| common_prefix_length(&p.name, name);
@@ -529,26 +529,26 @@ impl Assembly {
     }
 
     /// Returns the names of parts by index.
-    pub fn names(&self, parts: &[usize]) -> Vec<&str> {
+    pub fn part_names(&self, parts: &[usize]) -> Vec<&str> {
         parts.iter().map(|&k| self.parts[k].name()).collect()
     }
 
     /// Returns the box of all parts; without parts, an empty box at the origin.
     pub fn bounds(&self) -> Aabb {
-        let all = self.parts.iter().map(Part::bounds).reduce(|a, b| a.join(&b));
+        let all = self.parts.iter().map(Part::bounds).reduce(|a, b| a.union(&b));
         all.unwrap_or(Aabb { low: DVec3::ZERO, high: DVec3::ZERO })
     }
 
     /// Returns the largest absolute coordinate of a vertex or side of the box of all parts. Rounding errors
     /// are proportional to it.
-    pub fn size(&self) -> f64 {
+    pub fn coordinate_size(&self) -> f64 {
         let Aabb { low, high } = self.bounds();
         low.abs().max(high.abs()).max(high - low).max_element()
     }
 
     /// Returns the largest side of the box of all parts.
-    pub(crate) fn extent(&self) -> f64 {
-        self.bounds().size().max_element()
+    pub(crate) fn largest_side(&self) -> f64 {
+        self.bounds().side_lengths().max_element()
     }
 }
 

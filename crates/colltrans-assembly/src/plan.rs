@@ -1,14 +1,15 @@
 //! Disassembly plans: the removal steps, the parts that remain, and why they remain.
 //!
 //! All parts keep their initial poses until they are removed. Which parts block a part along a direction therefore
-//! does not depend on earlier removals: the blocking graph of every state is a subgraph of one [`Matrix`]. Each step
+//! does not depend on earlier removals: the blocking graph of every state is a subgraph of one [`ContactMatrix`]. Each step
 //! removes one of the smallest removable groups over all directions (module `order` chooses among them). The *base*
 //! never moves: the fixed parts, or else the largest part. If a removable group contains the base, the other parts
 //! move in the opposite direction. A removed group is then taken apart by itself.
 //!
 //! If no direction of the matrix removes a group, these are tried in turn: finer candidates, samples of the sphere,
 //! samples refined for movable parts, a proof over the sphere, paths of several moves, and a turn followed by a move.
-//! Every step is replayed against the remaining parts before it is reported (module `replay`).
+//! Every step is replayed against the remaining parts before it is reported (module `replay`). The exception is a turn
+//! followed by a move, which its own search proves (module `bayonet`).
 
 mod bayonet;
 mod interlock;
@@ -35,37 +36,37 @@ use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
 
 use colltrans::Bounded;
-use colltrans::free::FreeOptions;
+use colltrans::removal::directions::FreeOptions;
 use colltrans::solid::Workspace;
 use glam::DVec3;
 use petgraph::unionfind::UnionFind;
 
-use crate::blocking::Blocking;
+use crate::blocking::BlockingGraph;
 use crate::bodies::Bodies;
-use crate::candidates::Finer;
+use crate::candidates::FinerCandidate;
 use crate::error::AssemblyError;
-use crate::free::Removal;
-use crate::likes::likes;
-use crate::map::{MapOptions, way_out};
-use crate::matrix::{Matrix, direction_bits};
+use crate::free::RemovalPair;
+use crate::identical::first_identical_parts;
+use crate::map::{MapOptions, find_removal_direction};
+use crate::matrix::{ContactMatrix, direction_bits};
 use crate::part::Part;
-use crate::sphere::{Sphere, unit};
-use crate::watch::{Stage, Tally, Watch};
+use crate::sphere::{Sphere, normalized_direction};
+use crate::watch::{Stage, StageProgress, Watch};
 use crate::witness::Memory;
 
 use bayonet::Bayonet;
-pub use interlock::Hold;
-pub use multi_move::Moves;
-use multi_move::RemovalPath;
+pub use interlock::BlockingSets;
+use multi_move::MovePath;
+pub use multi_move::PathSearch;
 pub use options::PlanOptions;
 use order::{GroupChoice, Order};
-pub use precedence::and_or;
-pub use selection::{Wanted, remove};
+pub use precedence::precedence_graph;
+pub use selection::{SelectedRemoval, remove};
 use single::SingleParts;
 use sphere_proof::{SphereProof, prove_interlocked};
 pub use step::{Leg, Step, Turn, TurnProof};
-pub use times::Times;
-pub use tolerated::Passed;
+pub use times::HandlingTimes;
+pub use tolerated::ToleratedContact;
 
 /// Interlocked parts: no translation of a group as one body separates it from the other parts.
 ///
@@ -74,24 +75,24 @@ pub use tolerated::Passed;
 /// time, each in its own direction, may still come apart.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Stuck {
+pub struct Interlocked {
     /// Indices of the parts, in increasing order.
     pub parts: Vec<usize>,
     /// Number of distinct directions that were tested.
-    pub directions: usize,
+    pub tested_directions: usize,
     /// Number of cells of the sphere of directions in the proof that no group leaves the others by one translation,
     /// in any direction. `None` without a proof; then directions that were not tested may separate the parts.
-    pub proven: Option<usize>,
+    pub proof_cells: Option<usize>,
     /// Result of the search for paths of several moves.
-    pub moves: Moves,
+    pub path_search: PathSearch,
     /// For each movable part, the smallest sets of other parts that block it.
-    pub holds: Vec<Hold>,
+    pub blocking_sets: Vec<BlockingSets>,
     /// Pairs that overlap with this fit and therefore move as one body.
-    pub overlapping: Vec<[usize; 2]>,
+    pub overlapping_pairs: Vec<[usize; 2]>,
     /// Whether the group contains fixed parts.
-    pub fixed: bool,
+    pub has_fixed_parts: bool,
     /// Whether order or direction constraints concern these parts. All statements then hold under these constraints.
-    pub constrained: bool,
+    pub is_constrained: bool,
 }
 
 /// A disassembly plan.
@@ -102,38 +103,41 @@ pub struct Plan {
     pub steps: Vec<Step>,
     /// Parts from which all others were removed and which stay in place: the base, or parts that stay together. Empty
     /// if parts are [left](Self::left).
-    pub last: Vec<usize>,
+    pub base: Vec<usize>,
     /// Parts that remain because they are fixed or because no tested direction moves them.
-    pub left: Vec<usize>,
+    pub remaining: Vec<usize>,
     /// Interlocked groups, with the reasons.
-    pub stuck: Vec<Stuck>,
+    pub interlocked: Vec<Interlocked>,
     /// For each part, the index of the first part with the same shape (see [`likes`](crate::likes::likes)).
-    pub likes: Vec<usize>,
+    pub first_identical: Vec<usize>,
     /// For a plan that removes selected parts: which other parts are removed with them. `None` for a plan of all
     /// parts.
-    pub wanted: Option<Wanted>,
+    pub selection: Option<SelectedRemoval>,
 }
 
 /// Computes a plan that takes all parts apart.
 ///
 /// Uses the directions of a matrix of all parts, and finer directions for parts that those do not move. For
-/// interlocked groups, tries to prove that no translation direction separates them ([`Stuck::proven`]). The proof is
-/// not attempted for open surfaces, ignored pairs, pairs with a minimum gap, or groups of more than 40 parts.
+/// interlocked groups, tries to prove that no translation direction separates them ([`Interlocked::proof_cells`]). The proof is
+/// not attempted in these cases:
+/// - [`PlanOptions::prove`] is false, a minimum gap is set, or overlaps at the start are ignored;
+/// - the group has more than 40 parts, open surfaces, ignored pairs, snap fits, or pairs whose crossings at the start
+///   are tolerated.
 ///
 /// # Errors
 /// Returns an error if the run is cancelled, if the up direction of the options is zero or not finite, or if a step
 /// fails its replay (a bug).
 pub fn disassemble<'a>(
     bodies: &'a Bodies<'a>,
-    matrix: &Matrix<'a>,
-    finer: &[Finer],
+    matrix: &ContactMatrix<'a>,
+    finer: &[FinerCandidate],
     options: PlanOptions,
     watch: Watch,
 ) -> Result<Plan, AssemblyError> {
-    let likes = likes(bodies.assembly());
+    let likes = first_identical_parts(bodies.assembly());
     let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
     planner.plan_all(matrix)?;
-    Ok(Plan { likes: likes.clone(), ..planner.plan })
+    Ok(Plan { first_identical: likes.clone(), ..planner.plan })
 }
 
 /// Maximum number of finer directions that are tested for an interlocked group.
@@ -145,16 +149,16 @@ const MIN_LOOSE_TRAVEL: f64 = 0.125;
 
 struct Planner<'a> {
     bodies: &'a Bodies<'a>,
-    finer: &'a [Finer],
+    finer: &'a [FinerCandidate],
     options: PlanOptions,
     up: DVec3,
     likes: &'a [usize],
     watch: Watch<'a>,
-    tally: Tally<'a>,
+    tally: StageProgress<'a>,
     plan: Plan,
     contact_cache: lazy_search::ContactCache,
     /// The complete matrix of the remaining parts, once a state without a removable single part needed it.
-    complete_matrix: Option<Matrix<'a>>,
+    complete_matrix: Option<ContactMatrix<'a>>,
     /// Whether any part is an open surface.
     has_surfaces: bool,
     /// The selected parts to remove; empty to remove all.
@@ -171,7 +175,7 @@ struct GroupRemoval {
     parts: Vec<usize>,
     direction: DVec3,
     /// The path of several moves, if one move does not suffice.
-    path: Option<RemovalPath>,
+    path: Option<MovePath>,
     /// The turn before the straight move and the travel after it, if a turn is needed.
     bayonet: Option<(Leg, Bounded)>,
 }
@@ -200,7 +204,7 @@ impl From<GroupChoice> for GroupRemoval {
 /// leave.
 fn smallest_removable_group(
     order: &mut Order,
-    matrix: &Matrix,
+    matrix: &ContactMatrix,
     left: &[usize],
 ) -> Option<GroupChoice> {
     #[cfg(test)]
@@ -208,7 +212,8 @@ fn smallest_removable_group(
     let mut groups: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
     let arcs = order.order_arcs();
     for (k, &d) in matrix.directions().iter().enumerate() {
-        for group in Blocking::with_order(matrix, k, &arcs, order.present()).removable() {
+        for group in BlockingGraph::with_order(matrix, k, &arcs, order.present()).removable_groups()
+        {
             let removal = order
                 .choice_for(&group, left, d)
                 .filter(|removal| removal.parts.len() < left.len());
@@ -234,13 +239,13 @@ thread_local! {
 impl<'a> Planner<'a> {
     fn new(
         bodies: &'a Bodies<'a>,
-        finer: &'a [Finer],
+        finer: &'a [FinerCandidate],
         likes: &'a [usize],
         options: PlanOptions,
         watch: Watch<'a>,
     ) -> Result<Self, AssemblyError> {
-        let tally = watch.stage(Stage::Plan, bodies.len());
-        let up = unit(options.up.unwrap_or(bodies.assembly().up()))?;
+        let tally = watch.start_stage(Stage::Plan, bodies.len());
+        let up = normalized_direction(options.up.unwrap_or(bodies.assembly().up()))?;
         let (plan, contact_cache) = (Plan::default(), lazy_search::ContactCache::default());
         let (wanted, movable) = (&[][..], None);
         let has_surfaces = bodies.assembly().parts().iter().any(Part::is_surface);
@@ -262,23 +267,23 @@ impl<'a> Planner<'a> {
     }
 
     /// Plans the removal of all parts, or of the selected ones.
-    fn plan_all(&mut self, matrix: &Matrix<'a>) -> Result<(), AssemblyError> {
+    fn plan_all(&mut self, matrix: &ContactMatrix<'a>) -> Result<(), AssemblyError> {
         let all: Vec<usize> = (0..self.bodies.len()).collect();
-        self.plan.left = self.take_apart(&all, matrix, None)?;
+        self.plan.remaining = self.take_apart(&all, matrix, None)?;
         Ok(())
     }
 
     /// Returns a complete matrix that covers at least the remaining parts. Reuses the stored one if it covers them.
     fn complete_matrix_among(
         &mut self,
-        matrix: &Matrix<'a>,
+        matrix: &ContactMatrix<'a>,
         left: &[usize],
-    ) -> Result<Matrix<'a>, AssemblyError> {
+    ) -> Result<ContactMatrix<'a>, AssemblyError> {
         match self.complete_matrix.take().filter(|known| known.covers(left)) {
             Some(known) => self.complete_matrix = Some(known),
             None => {
                 self.complete_matrix =
-                    Some(matrix.complete_among(&self.bodies.mask(left), self.watch)?)
+                    Some(matrix.complete_among(&self.bodies.part_mask(left), self.watch)?)
             }
         }
         Ok(self.complete_matrix.clone().unwrap_or_else(|| matrix.clone()))
@@ -288,10 +293,10 @@ impl<'a> Planner<'a> {
     fn take_apart(
         &mut self,
         group: &[usize],
-        matrix: &Matrix<'a>,
+        matrix: &ContactMatrix<'a>,
         within: Option<usize>,
     ) -> Result<Vec<usize>, AssemblyError> {
-        let alive = self.bodies.mask(group);
+        let alive = self.bodies.part_mask(group);
         let mut left = group.to_vec();
         let movable = self.movable.filter(|_| within.is_none());
         let (bodies, likes, wanted) = (self.bodies, self.likes, self.wanted);
@@ -311,7 +316,7 @@ impl<'a> Planner<'a> {
         let mut single = single_parts(&order)?;
         let mut removed = RemovedParts { within, step_of_part: BTreeMap::new() };
         while !left.is_empty() {
-            self.watch.check()?;
+            self.watch.check_cancelled()?;
             let one = left.len() == 1 || constraints.keeps_together(&left);
             if self.is_out(&left, within) || one && !left.iter().any(|&k| self.is_fixed(k)) {
                 self.finish_with(left, within);
@@ -381,7 +386,7 @@ impl<'a> Planner<'a> {
         removal: GroupRemoval,
         (order, left): (&Order, &[usize]),
         [falls, off_balance]: [Vec<usize>; 2],
-        matrix: &Matrix<'a>,
+        matrix: &ContactMatrix<'a>,
         removed: &mut RemovedParts,
     ) -> Result<(), AssemblyError> {
         let start = self.options.start;
@@ -392,11 +397,12 @@ impl<'a> Planner<'a> {
         let at = self.plan.steps.len();
         let GroupRemoval { parts, direction, path: moves, bayonet } = removal;
         let present = order.present();
-        let ignored = self.bodies.partners(&parts, present).filter(|&[a, b]| {
-            self.bodies.tolerated([a, b]).is_none() && self.bodies.lets_pass(a, b, start)
+        let ignored = self.bodies.present_partners(&parts, present).filter(|&[a, b]| {
+            self.bodies.tolerated_contacts([a, b]).is_none()
+                && self.bodies.disregards_contacts(a, b, start)
         });
         let ignored = ignored.collect();
-        let passed = Passed::between(self.bodies, &parts, present);
+        let passed = ToleratedContact::tolerated_contacts(self.bodies, &parts, present);
         let surfaces = self.surfaces_ahead(&parts, left, direction);
         let several = moves.is_some() || bayonet.is_some();
         let after = self.preceding_steps(&parts, direction, several, matrix, removed);
@@ -419,17 +425,17 @@ impl<'a> Planner<'a> {
             direction,
             travel,
             path,
-            back,
-            within: removed.within,
-            after,
+            return_legs: back,
+            group_step: removed.within,
+            predecessors: after,
             ignored,
-            passed,
-            falls,
+            tolerated: passed,
+            falling: falls,
             off_balance,
             surfaces,
         });
         for _ in &parts {
-            self.tally.step()?;
+            self.tally.finish_item()?;
         }
         let wanted = |part: &usize| self.wanted.contains(part);
         let none = self.wanted.is_empty();
@@ -449,7 +455,7 @@ impl<'a> Planner<'a> {
     /// Stores the last part or group of the whole assembly. Does nothing for a group that was taken apart.
     fn finish_with(&mut self, left: Vec<usize>, within: Option<usize>) {
         if within.is_none() {
-            self.plan.last = left;
+            self.plan.base = left;
         }
     }
 
@@ -462,7 +468,7 @@ impl<'a> Planner<'a> {
         group: &[usize],
         direction: DVec3,
         several: bool,
-        matrix: &Matrix,
+        matrix: &ContactMatrix,
         RemovedParts { within, step_of_part }: &RemovedParts,
     ) -> Vec<usize> {
         let mut after: Vec<usize> = within.iter().copied().collect();
@@ -474,18 +480,18 @@ impl<'a> Planner<'a> {
         }
         if several {
             after.extend(step_of_part.values());
-        } else if let Some(k) = matrix.position(direction).filter(|_| matrix.is_complete()) {
-            let met = group.iter().flat_map(|&part| matrix.of_part(k, part));
+        } else if let Some(k) = matrix.direction_index(direction).filter(|_| matrix.is_complete()) {
+            let met = group.iter().flat_map(|&part| matrix.contacts_of_part(k, part));
             after.extend(met.filter_map(|m| step_of_part.get(&m.fixed)));
         } else {
             let (mut workspace, start) = (Workspace::default(), self.options.start);
             for &part in group {
-                for (_, other) in self.bodies.ahead(part, direction) {
+                for (_, other) in self.bodies.parts_ahead(part, direction) {
                     let Some(step) = step_of_part.get(&other).filter(|step| !after.contains(step))
                     else {
                         continue;
                     };
-                    if self.bodies.meets([part, other], direction, start, &mut workspace) {
+                    if self.bodies.ever_meets([part, other], direction, start, &mut workspace) {
                         after.push(*step);
                     }
                 }
@@ -498,7 +504,8 @@ impl<'a> Planner<'a> {
 
     /// Returns the open surfaces of a group and those remaining ones whose boxes lie ahead of the group.
     fn surfaces_ahead(&self, group: &[usize], left: &[usize], direction: DVec3) -> Vec<usize> {
-        let passed = |&part: &usize| self.bodies.ahead(part, direction).into_iter().map(|x| x.1);
+        let passed =
+            |&part: &usize| self.bodies.parts_ahead(part, direction).into_iter().map(|x| x.1);
         if !self.has_surfaces {
             return Vec::new();
         }
@@ -518,7 +525,7 @@ impl<'a> Planner<'a> {
         &mut self,
         order: &Order,
         left: &[usize],
-        matrix: &Matrix,
+        matrix: &ContactMatrix,
         tested: &mut HashSet<[u64; 3]>,
     ) -> Result<Option<GroupRemoval>, AssemblyError> {
         let alive = order.present();
@@ -527,7 +534,7 @@ impl<'a> Planner<'a> {
         }
         let concerning = |any: bool| {
             let own = self.finer.iter().filter(move |f| f.part.is_none() == any);
-            own.filter(|f| f.concerns(alive)).map(|f| f.direction)
+            own.filter(|f| f.concerns_any_of(alive)).map(|f| f.direction)
         };
         let own: Vec<DVec3> = concerning(true).chain(concerning(false).take(MAX_FINER)).collect();
         let sphere = match self.options.samples {
@@ -561,7 +568,7 @@ impl<'a> Planner<'a> {
         &self,
         order: &Order,
         left: &[usize],
-        matrix: &Matrix,
+        matrix: &ContactMatrix,
     ) -> Result<Option<GroupRemoval>, AssemblyError> {
         let alive = order.present();
         let PlanOptions { start, samples, .. } = self.options;
@@ -576,7 +583,7 @@ impl<'a> Planner<'a> {
         groups.truncate(MAX_LOOSE);
         let options = MapOptions { samples, start, ..MapOptions::default() };
         for parts in groups {
-            let found = way_out(self.bodies, &parts, alive, options, self.watch)?;
+            let found = find_removal_direction(self.bodies, &parts, alive, options, self.watch)?;
             if let Some(direction) = found.filter(|&d| order.choice_for(&parts, left, d).is_some())
             {
                 return Ok(Some(GroupRemoval::straight(parts, direction)));
@@ -586,11 +593,11 @@ impl<'a> Planner<'a> {
     }
 
     /// Checks whether a group travels at least [`MIN_LOOSE_TRAVEL`] of its size along a direction of the matrix.
-    fn is_loose(&self, group: &[usize], alive: &[bool], matrix: &Matrix) -> bool {
-        let bounds = group.iter().map(|&k| self.bodies.bounds(k)).reduce(|a, b| a.join(&b));
+    fn is_loose(&self, group: &[usize], alive: &[bool], matrix: &ContactMatrix) -> bool {
+        let bounds = group.iter().map(|&k| self.bodies.bounds(k)).reduce(|a, b| a.union(&b));
         let size = bounds.map_or(0.0, |b| (b.high - b.low).max_element());
         (0..matrix.directions().len()).any(|k| {
-            let met = group.iter().flat_map(|&part| matrix.of_part(k, part));
+            let met = group.iter().flat_map(|&part| matrix.contacts_of_part(k, part));
             let mut met = met.filter(|m| alive[m.fixed] && !group.contains(&m.fixed));
             met.all(|m| m.displaced_distance() >= MIN_LOOSE_TRAVEL * size)
         })
@@ -600,13 +607,14 @@ impl<'a> Planner<'a> {
     /// leave together.
     fn rigid_groups(&self, left: &[usize]) -> Vec<Vec<usize>> {
         let mut sets = UnionFind::new(self.bodies.len());
-        for &[a, b] in self.bodies.overlapping() {
-            let rigid = !self.bodies.lets_pass(a, b, self.options.start);
+        for &[a, b] in self.bodies.overlapping_pairs() {
+            let rigid = !self.bodies.disregards_contacts(a, b, self.options.start);
             if rigid && left.contains(&a) && left.contains(&b) {
                 sets.union(a, b);
             }
         }
-        for [a, b] in self.bodies.assembly().constraints().rigid_pairs(&self.bodies.mask(left)) {
+        for [a, b] in self.bodies.assembly().constraints().rigid_pairs(&self.bodies.part_mask(left))
+        {
             sets.union(a, b);
         }
         let mut groups = BTreeMap::<usize, Vec<usize>>::new();
@@ -652,8 +660,8 @@ impl<'a> Planner<'a> {
 
     /// Returns the best direction for a group with a known removal direction.
     ///
-    /// The candidates are that direction, its opposite, and the centre of the free region around it. If the base is
-    /// in the group, the other parts move instead.
+    /// The candidates are that direction, its opposite, and the nearest centre of a free region. If the base is in the
+    /// group, the other parts move instead.
     fn best_direction(
         &self,
         order: &mut Order,
@@ -670,7 +678,7 @@ impl<'a> Planner<'a> {
         let mut directions = vec![found, DVec3::ZERO - found];
         directions.extend(self.region_center_near(&parts, &others, found)?);
         let constraints = self.bodies.assembly().constraints();
-        let (mut memory, present) = (Memory::default(), self.bodies.mask(&others));
+        let (mut memory, present) = (Memory::default(), self.bodies.part_mask(&others));
         directions.retain(|&d| {
             constraints.allows_direction(&parts, d)
                 && memory.is_free(self.bodies, &parts, &present, d, self.options.start)
@@ -680,8 +688,8 @@ impl<'a> Planner<'a> {
         Ok(order.best_group(&std::iter::once(group)).map_or(removal, GroupRemoval::from))
     }
 
-    /// Returns the centre of the free region nearest to a direction. Returns `None` if the free directions cannot be
-    /// computed or no region is free.
+    /// Returns the centre of a free region that is nearest to a direction, of all free regions. Returns `None` if the
+    /// free directions cannot be computed or no region is free.
     fn region_center_near(
         &self,
         parts: &[usize],
@@ -689,14 +697,15 @@ impl<'a> Planner<'a> {
         direction: DVec3,
     ) -> Result<Option<DVec3>, AssemblyError> {
         // Without exact free directions the found direction is used.
-        let Ok(removal) = Removal::between(self.bodies, parts, others) else { return Ok(None) };
+        let Ok(removal) = RemovalPair::between(self.bodies, parts, others) else { return Ok(None) };
         let options = FreeOptions::DEFAULT.with_looks(MAX_REGION_LOOKS);
         let never = AtomicBool::new(false);
-        let free = match removal.directions(options, self.watch.flag().unwrap_or(&never)) {
-            Ok(free) => free,
-            Err(AssemblyError::Cancelled) => return Err(AssemblyError::Cancelled),
-            Err(_) => return Ok(None),
-        };
+        let free =
+            match removal.free_directions(options, self.watch.cancel_flag().unwrap_or(&never)) {
+                Ok(free) => free,
+                Err(AssemblyError::Cancelled) => return Err(AssemblyError::Cancelled),
+                Err(_) => return Ok(None),
+            };
         let near = |d: &DVec3| d.dot(direction);
         let around = free.regions().into_iter().map(|region| region.center);
         Ok(around.max_by(|a, b| near(a).total_cmp(&near(b))))
@@ -707,8 +716,8 @@ impl<'a> Planner<'a> {
         &self,
         order: &Order,
         left: &[usize],
-        matrix: &Matrix,
-    ) -> Result<(Option<GroupRemoval>, Option<Moves>), AssemblyError> {
+        matrix: &ContactMatrix,
+    ) -> Result<(Option<GroupRemoval>, Option<PathSearch>), AssemblyError> {
         if left.iter().all(|&k| self.is_fixed(k)) {
             return Ok((None, None));
         }
@@ -740,21 +749,27 @@ impl<'a> Planner<'a> {
     fn explain_stuck(
         &mut self,
         left: &[usize],
-        matrix: &Matrix,
-        (tested, proven, moves): (usize, Option<usize>, Option<Moves>),
+        matrix: &ContactMatrix,
+        (tested, proven, moves): (usize, Option<usize>, Option<PathSearch>),
     ) {
         let movable = left.iter().any(|&k| !self.is_fixed(k));
         if !movable {
             return;
         }
         let fixed = left.iter().any(|&k| self.is_fixed(k));
-        let moves = moves.unwrap_or(Moves::NotAsked("all parts are fixed"));
+        let moves = moves.unwrap_or(PathSearch::NotSearched("all parts are fixed"));
         let known = (tested, proven, moves);
-        self.plan.stuck.push(interlock::explain_stuck(self.bodies, left, matrix, fixed, known));
+        self.plan.interlocked.push(interlock::explain_stuck(
+            self.bodies,
+            left,
+            matrix,
+            fixed,
+            known,
+        ));
     }
 
     fn is_fixed(&self, part: usize) -> bool {
-        self.bodies.assembly().parts()[part].fixed()
+        self.bodies.assembly().parts()[part].is_fixed()
     }
 }
 
@@ -789,11 +804,12 @@ mod tests {
         let assembly = Assembly::new(parts).unwrap();
         let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
         let (all, start, watch) = (vec![true; 40], StartOverlap::Refuse, Watch::default());
-        let matrix = Matrix::new(&bodies, &[DVec3::X, DVec3::NEG_X], &all, start, watch).unwrap();
+        let matrix =
+            ContactMatrix::new(&bodies, &[DVec3::X, DVec3::NEG_X], &all, start, watch).unwrap();
         GRAPH_COUNT.with(|graphs| graphs.set(0));
         let plan = disassemble(&bodies, &matrix, &[], PlanOptions::default(), watch).unwrap();
         assert_eq!(plan.steps.len(), 39);
-        assert_eq!(plan.last.len(), 1);
+        assert_eq!(plan.base.len(), 1);
         assert!(plan.steps.iter().all(|step| step.parts.len() == 1));
         assert_eq!(
             GRAPH_COUNT.with(std::cell::Cell::get),
@@ -821,8 +837,8 @@ mod tests {
             let count = parts.len();
             let assembly = Assembly::new(parts).unwrap();
             let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
-            let (all, likes) = (vec![true; count], likes(&assembly));
-            let matrix = Matrix::on_demand(&bodies, &axes, &all, start);
+            let (all, likes) = (vec![true; count], first_identical_parts(&assembly));
+            let matrix = ContactMatrix::on_demand(&bodies, &axes, &all, start);
             let mut order = Order::new(&bodies, &matrix, &likes, &all, DVec3::Z, None, &[])
                 .with_shortcuts(42, start);
             let movable = |_, part: usize| !order.is_stationary(part);
@@ -851,8 +867,8 @@ mod tests {
             let assembly = Assembly::new(parts).unwrap();
             let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
             let all = vec![true; count];
-            let matrix = Matrix::on_demand(&bodies, &[DVec3::X, DVec3::NEG_X], &all, start);
-            bodies.asked.store(0, Relaxed);
+            let matrix = ContactMatrix::on_demand(&bodies, &[DVec3::X, DVec3::NEG_X], &all, start);
+            bodies.query_count.store(0, Relaxed);
             let mut single =
                 SingleParts::new(&bodies, &matrix, &[], &all, |_, _| true, watch).unwrap();
             assert_eq!(single.entry_count(), 2 * count);
@@ -873,7 +889,7 @@ mod tests {
                 };
                 assert_eq!(free, expected);
             }
-            let (tested, n) = (bodies.asked.load(Relaxed) as f64, count as f64);
+            let (tested, n) = (bodies.query_count.load(Relaxed) as f64, count as f64);
             assert!(tested <= 2.0 * n * (2.0 + n.ln()), "{tested} of {n} parts");
         }
     }

@@ -22,19 +22,19 @@ mod tables;
 mod viewer;
 mod words;
 
-pub use colltrans_picture::escaped;
+pub use colltrans_picture::escape_xml;
 use glam::DVec3;
 use maud::PreEscaped;
 
-pub(crate) use crate::digits::{digits, short};
-use crate::findings::Findings;
+pub(crate) use crate::digits::{rounded_number, short_number};
+use crate::findings::Analysis;
 use crate::plan::Step;
 use scene::Studio;
 use words::Words;
 
 /// Data that all pages share.
 struct Report<'a> {
-    pub f: &'a Findings<'a>,
+    pub f: &'a Analysis<'a>,
     pub words: Words<'a>,
     pub studio: Studio<'a>,
     /// For each step, the estimated handling time in seconds.
@@ -47,16 +47,17 @@ struct Report<'a> {
 
 impl<'a> Report<'a> {
     /// Prepares the data of a report.
-    fn new(f: &'a Findings<'a>) -> Self {
+    fn new(f: &'a Analysis<'a>) -> Self {
         let mut rounds = vec![0; f.plan.steps.len()];
-        for (round, steps) in f.plan.rounds().iter().enumerate() {
+        for (round, steps) in f.plan.parallel_rounds().iter().enumerate() {
             for &step in steps {
                 rounds[step] = round;
             }
         }
         let bounds = f.bodies.assembly().bounds();
         let diagonal = DVec3::length(bounds.high - bounds.low);
-        let (words, studio, seconds) = (Words::new(f), Studio::new(f), f.times.of(&f.plan));
+        let (words, studio, seconds) =
+            (Words::new(f), Studio::new(f), f.times.step_seconds(&f.plan));
         Self { f, words, studio, seconds, rounds, diagonal }
     }
 }
@@ -67,7 +68,7 @@ fn picture_markup(svg: String) -> PreEscaped<String> {
 }
 
 /// Formats a direction: an axis by its signed name, other directions by their components.
-pub(crate) fn arrow(d: glam::DVec3) -> String {
+pub(crate) fn direction_name(d: glam::DVec3) -> String {
     let names = [(glam::DVec3::X, "x"), (glam::DVec3::Y, "y"), (glam::DVec3::Z, "z")];
     for (axis, name) in names {
         if d == axis {
@@ -84,13 +85,13 @@ pub(crate) fn arrow(d: glam::DVec3) -> String {
 
 /// Iterates over the parts that are present when a step begins: of the assembly, or of the group that the
 /// step takes apart.
-fn present_parts<'a>(f: &'a Findings, step: usize) -> impl Iterator<Item = usize> + use<'a> {
+fn present_parts<'a>(f: &'a Analysis, step: usize) -> impl Iterator<Item = usize> + use<'a> {
     let (steps, mut is_present) = (&f.plan.steps, vec![true; f.bodies.len()]);
-    let within = steps[step].within;
+    let within = steps[step].group_step;
     if let Some(group) = within {
-        is_present = f.bodies.mask(&steps[group].parts);
+        is_present = f.bodies.part_mask(&steps[group].parts);
     }
-    for before in steps[..step].iter().filter(|before| before.within == within) {
+    for before in steps[..step].iter().filter(|before| before.group_step == within) {
         before.parts.iter().for_each(|&part| is_present[part] = false);
     }
     (0..is_present.len()).filter(move |&part| is_present[part])
@@ -129,8 +130,8 @@ mod tests {
         let cases =
             [(0.0, "0"), (27.0, "27"), (0.0617, "0.0617"), (1234.56, "1235"), (1e-9, "1.00e-9")];
         for (x, text) in cases {
-            assert_eq!(short(x), text);
+            assert_eq!(short_number(x), text);
         }
-        assert_eq!(arrow(glam::DVec3::NEG_Y), "−y");
+        assert_eq!(direction_name(glam::DVec3::NEG_Y), "−y");
     }
 }

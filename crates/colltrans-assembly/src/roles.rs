@@ -1,7 +1,8 @@
 //! Roles of pairs whose contact differs from the others: press fits, threads, soft parts, snap fits and glued parts.
 //!
-//! A pair with a role has bodies of its own, which are used only for this pair. The role affects no other pair, and
-//! later contacts of the pair still count. A pair tolerates one of these:
+//! A pair with a tolerance of its own or a thread has bodies of its own, which are used only for this pair. A role
+//! affects no other pair. Later contacts of the pair still count, except between glued parts. A pair tolerates one of
+//! these:
 //!
 //! - a *tolerance* `L`: both parts are shrunk by `L / 2`, like all parts with the general tolerance. *Press* and
 //!   *soft* are reasons for one. Without a length the tolerance is slightly more than the depth of the overlap;
@@ -11,7 +12,7 @@
 //! - a *snap* fit of length `L`: contacts that begin within a travel of `L` are tolerated, because the part deflects;
 //! - *glued* parts: they leave as one and are not taken apart.
 
-use crate::digits::short;
+use crate::digits::short_number;
 
 /// The role of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
@@ -45,7 +46,7 @@ impl Role {
     }
 
     /// Returns the role with a name, or `None` if there is none.
-    pub fn named(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|role| role.name() == name)
     }
 }
@@ -61,33 +62,34 @@ pub struct PairFit {
 
 /// The contacts that a pair with a fit of its own tolerates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Tolerated {
+pub enum PairTolerance {
     /// Both parts are shrunk by half of this length.
     Within(f64),
     /// One part is replaced by the core of its thread, with this radius. The other is unchanged.
     Core(f64),
     /// Contacts that begin within this travel are tolerated.
-    Bent(f64),
-    /// Crossings at the start are tolerated, because no tolerance ends the overlap or no thread was found.
+    Snap(f64),
+    /// Crossings at the start are tolerated, because no tolerance both ends the overlap and leaves the parts whole, or
+    /// no thread was found.
     Crossing,
     /// The parts leave as one.
-    AsOne,
+    Glued,
 }
 
-impl Tolerated {
+impl PairTolerance {
     /// Returns a description of the tolerated contacts.
-    pub fn words(&self, role: Option<Role>) -> String {
+    pub fn describe(&self, role: Option<Role>) -> String {
         let name = role.map_or("", Role::name);
         match (self, role) {
             (Self::Within(length), Some(Role::Press)) => format!("press fit, tolerance {length}"),
             (Self::Within(length), Some(_)) => format!("{name}, tolerance {length}"),
             (Self::Within(length), None) => format!("tolerance {length}"),
             (Self::Core(radius), _) => {
-                format!("thread, the screw taken as its core of radius {}", short(*radius))
+                format!("thread, the screw taken as its core of radius {}", short_number(*radius))
             }
-            (Self::Bent(length), _) => format!("snap, contacts within {length} tolerated"),
+            (Self::Snap(length), _) => format!("snap, contacts within {length} tolerated"),
             (Self::Crossing, _) => format!("{name}, crossings at the start tolerated"),
-            (Self::AsOne, _) => "glued".into(),
+            (Self::Glued, _) => "glued".into(),
         }
     }
 }

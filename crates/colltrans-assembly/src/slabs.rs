@@ -14,7 +14,7 @@ use colltrans::Solid;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::boxes::{first_meeting, span};
+use crate::boxes::{first_meeting, value_range};
 
 /// Widening of the distance of slabs, in multiples of the largest coordinate.
 const SLACK: f64 = 32.0 * f64::EPSILON;
@@ -42,7 +42,7 @@ impl Slabs {
         let reach = |bodies: &Vec<&Solid>| -> Vec<[f64; 2]> {
             let along = |&n: &DVec3| {
                 let coordinates = bodies.iter().flat_map(|body| body.vertices()).map(|p| n.dot(*p));
-                let [low, high] = span(coordinates);
+                let [low, high] = value_range(coordinates);
                 [low - around, high + around]
             };
             normals.iter().map(along).collect()
@@ -120,7 +120,7 @@ mod tests {
                         Clearance::Blocked { contact, .. } => {
                             met += 1;
                             let least = entry.unwrap_or(f64::INFINITY);
-                            lost += usize::from(least > contact.shrunk_distance.upper + 1e-12);
+                            lost += usize::from(least > contact.offset_distance.upper + 1e-12);
                         }
                         Clearance::Overlapping(_) => lost += usize::from(entry.is_none()),
                     }

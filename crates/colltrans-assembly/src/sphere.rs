@@ -15,29 +15,30 @@ pub struct Sphere {
     /// The vertices, directions of length 1.
     pub directions: Vec<DVec3>,
     /// The triangles; the first 20 are those of the icosahedron.
-    pub triangles: Vec<Triangle>,
+    pub triangles: Vec<SphereTriangle>,
     middles: HashMap<[u32; 2], u32>,
 }
 
 /// A spherical triangle.
 #[derive(Debug, Clone, Copy)]
-pub struct Triangle {
+pub struct SphereTriangle {
     /// Indices of its corners, counter-clockwise from outside.
     pub corners: [u32; 3],
     /// Index of the first of its four consecutive parts; 0 if it is not subdivided.
-    pub parts: u32,
+    pub first_child: u32,
 }
 
 impl Sphere {
     /// Builds the icosahedron with each triangle subdivided `levels` times. It has `10 * 4^levels + 2` directions.
     pub fn new(levels: u32) -> Self {
         let (directions, corners) = icosahedron();
-        let triangles = corners.iter().map(|&corners| Triangle { corners, parts: 0 }).collect();
+        let triangles =
+            corners.iter().map(|&corners| SphereTriangle { corners, first_child: 0 }).collect();
         let mut sphere = Self { directions, triangles, middles: HashMap::new() };
         for _ in 0..levels {
-            let leaves: Vec<usize> = sphere.leaves().collect();
+            let leaves: Vec<usize> = sphere.leaf_triangles().collect();
             for t in leaves {
-                sphere.cut(t);
+                sphere.subdivide(t);
             }
         }
         sphere
@@ -53,21 +54,21 @@ impl Sphere {
     }
 
     /// Returns the triangles that are not subdivided.
-    pub fn leaves(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.triangles.len()).filter(|&t| self.triangles[t].parts == 0)
+    pub fn leaf_triangles(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.triangles.len()).filter(|&t| self.triangles[t].first_child == 0)
     }
 
     /// Subdivides a triangle into four, unless it is subdivided already.
-    pub fn cut(&mut self, triangle: usize) {
-        if self.triangles[triangle].parts != 0 {
+    pub fn subdivide(&mut self, triangle: usize) {
+        if self.triangles[triangle].first_child != 0 {
             return;
         }
         let [a, b, c] = self.triangles[triangle].corners;
         let (ab, bc, ca) =
             (self.edge_midpoint(a, b), self.edge_midpoint(b, c), self.edge_midpoint(c, a));
-        self.triangles[triangle].parts = self.triangles.len() as u32;
+        self.triangles[triangle].first_child = self.triangles.len() as u32;
         for corners in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-            self.triangles.push(Triangle { corners, parts: 0 });
+            self.triangles.push(SphereTriangle { corners, first_child: 0 });
         }
     }
 
@@ -90,8 +91,8 @@ impl Sphere {
                 .unwrap_or((0, DVec3::X))
         };
         let mut best = nearest(0..20);
-        while self.triangles[best.0].parts != 0 {
-            let first = self.triangles[best.0].parts as usize;
+        while self.triangles[best.0].first_child != 0 {
+            let first = self.triangles[best.0].first_child as usize;
             best = nearest(first..first + 4);
         }
         best
@@ -106,13 +107,13 @@ impl Sphere {
     }
 
     /// Returns the angle of a triangle's longest side, in radians.
-    pub fn widest(&self, triangle: usize) -> f64 {
+    pub fn longest_side(&self, triangle: usize) -> f64 {
         let [a, b, c] = self.triangles[triangle].corners.map(|k| self.directions[k as usize]);
-        angle(a, b).max(angle(b, c)).max(angle(c, a))
+        angle_between(a, b).max(angle_between(b, c)).max(angle_between(c, a))
     }
 
     /// Returns the solid angle of a triangle.
-    pub fn area(&self, triangle: usize) -> f64 {
+    pub fn solid_angle(&self, triangle: usize) -> f64 {
         let [a, b, c] = self.triangles[triangle].corners.map(|k| self.directions[k as usize]);
         let volume = a.dot(b.cross(c));
         2.0 * volume.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
@@ -122,17 +123,18 @@ impl Sphere {
 /// Returns the direction with length 1. Directions of axes keep their exact components.
 ///
 /// # Errors
-/// Returns an error if the direction is zero, not finite or out of range.
-pub fn unit(direction: DVec3) -> Result<DVec3, AssemblyError> {
+/// Returns an error if a component is not finite, or if all are below [`MIN_MAGNITUDE`](colltrans::MIN_MAGNITUDE) in
+/// magnitude.
+pub fn normalized_direction(direction: DVec3) -> Result<DVec3, AssemblyError> {
     let scale = direction.abs().max_element();
     let sound = scale.is_finite() && scale >= colltrans::MIN_MAGNITUDE;
     let scaled = if sound { direction / scale } else { DVec3::ZERO };
-    let refused = AssemblyError::Direction { direction: direction.to_array() };
+    let refused = AssemblyError::InvalidDirection { direction: direction.to_array() };
     scaled.try_normalize().filter(|d| d.is_finite()).ok_or(refused)
 }
 
 /// Returns the angle between two vectors of length 1, in radians. It is accurate for small angles too.
-pub fn angle(a: DVec3, b: DVec3) -> f64 {
+pub fn angle_between(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b))
 }
 
@@ -174,7 +176,7 @@ mod tests {
         for levels in 0..4 {
             let sphere = Sphere::new(levels);
             assert_eq!(sphere.directions.len(), 10 * 4_usize.pow(levels) + 2);
-            let area: f64 = sphere.leaves().map(|t| sphere.area(t)).sum();
+            let area: f64 = sphere.leaf_triangles().map(|t| sphere.solid_angle(t)).sum();
             assert!((area - 4.0 * PI).abs() < 1e-12, "{area}");
         }
     }
@@ -183,7 +185,7 @@ mod tests {
     fn located_triangle_contains_the_direction() {
         let mut sphere = Sphere::new(2);
         let t = sphere.locate(DVec3::new(0.3, 0.2, 0.9).normalize()).0;
-        sphere.cut(t);
+        sphere.subdivide(t);
         let mut random = colltrans_testkit::random::Random::new(3);
         for _ in 0..1_000 {
             let d = random.direction();
@@ -191,7 +193,7 @@ mod tests {
             assert!(weights.min_element() > -1e-12);
             let corners = sphere.triangles[t].corners.map(|k| sphere.directions[k as usize]);
             let back = corners[0] * weights.x + corners[1] * weights.y + corners[2] * weights.z;
-            assert!(angle(back.normalize(), d) < 1e-12);
+            assert!(angle_between(back.normalize(), d) < 1e-12);
         }
     }
 }

@@ -13,23 +13,23 @@ pub struct Overlap {
     /// Indices of the parts, the smaller first.
     pub parts: [usize; 2],
     /// The least tolerance with which the parts do not overlap; `None` if no tolerance up to their size
-    /// suffices.
+    /// suffices. It is 0 if they overlap only with the requested fit.
     pub depth: Option<f64>,
     /// Whether the parts still overlap with the requested fit.
-    pub remains: bool,
+    pub remains_with_fit: bool,
 }
 
 impl Overlap {
     /// Checks whether the depth is at most [`MAX_TOLERANCE_SHARE`] of the thickness of both parts. A deeper
     /// overlap counts as a fault of the model.
     pub(crate) fn is_shallow(&self, bodies: &Bodies) -> bool {
-        self.is_within(bodies, MAX_TOLERANCE_SHARE)
+        self.is_at_most_share(bodies, MAX_TOLERANCE_SHARE)
     }
 
     /// Checks whether the depth is at most `share` of the thickness of both parts. The thickness is the
     /// smallest side of a part's box.
-    pub(crate) fn is_within(&self, bodies: &Bodies, share: f64) -> bool {
-        let thicknesses = self.parts.map(|k| bodies.bounds(k).size().min_element());
+    pub(crate) fn is_at_most_share(&self, bodies: &Bodies, share: f64) -> bool {
+        let thicknesses = self.parts.map(|k| bodies.bounds(k).side_lengths().min_element());
         self.depth.is_some_and(|depth| depth <= share * thicknesses[0].min(thicknesses[1]))
     }
 }
@@ -42,7 +42,7 @@ pub struct Start {
     pub overlaps: Vec<Overlap>,
     /// Tolerance with which no shallow overlap remains: 5 % above the deepest shallow overlap, rounded up to
     /// two digits. `None` if there is no shallow overlap above the noise.
-    pub suggested: Option<f64>,
+    pub suggested_tolerance: Option<f64>,
 }
 
 /// Maximum depth of a shallow overlap, as a share of the thickness of both parts.
@@ -54,18 +54,18 @@ impl Start {
     /// # Errors
     /// [`AssemblyError::Cancelled`], and [`AssemblyError::TooMany`] if too many boxes of parts intersect.
     pub fn new(bodies: &Bodies, watch: Watch) -> Result<Self, AssemblyError> {
-        let mut pairs = bodies.neighbours(0.0)?;
-        pairs.retain(|&[a, b]| bodies.assembly().ignored(a, b).is_none());
-        let tally = watch.stage(Stage::Start, pairs.len());
+        let mut pairs = bodies.neighbouring_pairs(0.0)?;
+        pairs.retain(|&[a, b]| bodies.assembly().ignored_contacts(a, b).is_none());
+        let tally = watch.start_stage(Stage::Start, pairs.len());
         let examine = |&[a, b]: &[usize; 2]| {
             let remains = bodies.overlaps(a, b);
-            let given = bodies.overlap_as_given(a, b);
+            let given = bodies.least_tolerance(a, b);
             let overlap = (remains || given.is_some()).then_some(Overlap {
                 parts: [a, b],
                 depth: given.unwrap_or(Some(0.0)),
-                remains,
+                remains_with_fit: remains,
             });
-            tally.step().map(|()| overlap)
+            tally.finish_item().map(|()| overlap)
         };
         let found: Result<Vec<Option<Overlap>>, AssemblyError> =
             pairs.par_iter().map(examine).collect();
@@ -73,16 +73,16 @@ impl Start {
         let depth_of = |o: &Overlap| o.depth.unwrap_or(f64::INFINITY);
         overlaps.sort_by(|x, y| depth_of(y).total_cmp(&depth_of(x)).then(x.parts.cmp(&y.parts)));
         let suggested = suggested_tolerance(bodies, &overlaps);
-        Ok(Self { overlaps, suggested })
+        Ok(Self { overlaps, suggested_tolerance: suggested })
     }
 
     /// Iterates over the pairs that overlap even with the requested fit.
     pub fn remaining(&self) -> impl Iterator<Item = &Overlap> {
-        self.overlaps.iter().filter(|o| o.remains)
+        self.overlaps.iter().filter(|o| o.remains_with_fit)
     }
 }
 
-/// Returns the tolerance for [`Start::suggested`].
+/// Returns the tolerance for [`Start::suggested_tolerance`].
 fn suggested_tolerance(bodies: &Bodies, overlaps: &[Overlap]) -> Option<f64> {
     let deepest = overlaps
         .iter()

@@ -14,16 +14,16 @@ use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::bodies::{Bodies, Fit, Room, two_digits_up};
-use crate::boxes::span;
-use crate::digits::short;
+use crate::bodies::{Bodies, Fit, FreeTravel, two_digits_up};
+use crate::boxes::value_range;
+use crate::digits::short_number;
 use crate::error::AssemblyError;
+use crate::identical::first_identical_parts;
 use crate::inertia;
-use crate::likes::likes;
 use crate::part::{Assembly, Part};
 use crate::roles::{PairFit, Role};
 use crate::start::{Overlap, Start};
-use crate::threads::{Round, Thread};
+use crate::threads::{RoundContact, Thread};
 
 /// Words in the names of soft parts.
 const SOFT_NAMES: [&str; 8] =
@@ -31,9 +31,9 @@ const SOFT_NAMES: [&str; 8] =
 /// Words in the names of rings that snap into a groove.
 const SNAP_NAMES: [&str; 7] =
     ["circlip", "snap ring", "snap_ring", "snapring", "retaining ring", "retaining_ring", "e-clip"];
-/// Maximum depth of a shallow overlap as a fraction of the thickness of both parts. This is the chord error of a
-/// round part of 16 sides. Deeper overlaps belong to the model, and a plan that ignores them need not apply to the
-/// real parts.
+/// Maximum depth of an overlap for which a tolerance is suggested by its depth alone, as a fraction of the thickness of
+/// both parts. [`Overlap::is_shallow`] has a larger limit. This is the chord error of a round part of 16 sides. Deeper
+/// overlaps belong to the model, and a plan that ignores them need not apply to the real parts.
 const MAX_SHALLOW_DEPTH: f64 = 0.01;
 /// Factor by which a tolerance exceeds the depth of an overlap.
 const TOLERANCE_FACTOR: f64 = 1.05;
@@ -47,13 +47,13 @@ pub struct Suggestion {
     /// The suggested fit.
     pub fit: PairFit,
     /// The reason.
-    pub why: String,
+    pub reason: String,
 }
 
 /// Returns suggestions for pairs without a specified fit: pairs that overlap with the fit of the bodies, and rings
 /// that snap into a groove.
-pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
-    let lacks_fit = |[a, b]: [usize; 2]| bodies.assembly().pair(a, b).is_none();
+pub fn suggest_fits(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
+    let lacks_fit = |[a, b]: [usize; 2]| bodies.assembly().pair_fit(a, b).is_none();
     let snaps = find_snaps(bodies);
     let rings: BTreeSet<usize> = snaps.iter().map(|(ring, _)| *ring).collect();
     let snaps = snaps.into_iter().map(|(_, snap)| snap);
@@ -62,7 +62,7 @@ pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
         .remaining()
         .filter(|o| lacks_fit(o.parts) && !snaps.iter().any(|snap| snap.parts == o.parts))
         // Pairs that only violate the minimum gap do not overlap.
-        .filter(|o| !matches!(bodies.fit(), Fit::Apart(_)) || o.depth != Some(0.0));
+        .filter(|o| !matches!(bodies.fit(), Fit::MinGap(_)) || o.depth != Some(0.0));
     candidates
         .filter_map(|overlap| suggest_fit(bodies, &rings, overlap))
         .chain(snaps.clone())
@@ -77,39 +77,39 @@ fn find_snaps(bodies: &Bodies) -> Vec<(usize, Suggestion)> {
     for ring in (0..parts.len()).filter(|&k| is_called(&parts[k], &SNAP_NAMES)) {
         let thickness = |axis: DVec3| {
             let along = parts[ring].solid().vertices().iter().map(|p| p.dot(axis));
-            let [low, high] = span(along);
+            let [low, high] = value_range(along);
             high - low
         };
-        let axes = inertia::axes(parts[ring].solid()).into_iter();
+        let axes = inertia::principal_axes(parts[ring].solid()).into_iter();
         let Some(axis) = axes.min_by(|a, b| thickness(*a).total_cmp(&thickness(*b))) else {
             continue;
         };
         let length = thickness(axis);
         let mut workspace = Workspace::default();
-        let mut stops = |other: usize, d: DVec3| match bodies.room(
+        let mut stops = |other: usize, d: DVec3| match bodies.free_travel(
             [ring, other],
             d,
             None,
             StartOverlap::Refuse,
             &mut workspace,
         ) {
-            Room::Free => false,
-            Room::Blocked(stop) => stop.distance() <= length,
-            Room::Overlapping => true,
+            FreeTravel::Free => false,
+            FreeTravel::Blocked(stop) => stop.distance() <= length,
+            FreeTravel::Overlapping => true,
         };
         for other in (0..parts.len()).filter(|&k| k != ring) {
-            let near = bodies.bounds(ring).grown(length).meets(&bodies.bounds(other));
+            let near = bodies.bounds(ring).expanded(length).intersects(&bodies.bounds(other));
             if near && stops(other, axis) && stops(other, DVec3::ZERO - axis) {
                 let fit =
                     PairFit { role: Some(Role::Snap), tolerance: Some(two_digits_up(length)) };
                 let why = format!(
                     "the name of {} says so, it is {} thick, and {} stops it in both directions",
                     parts[ring].name(),
-                    short(length),
+                    short_number(length),
                     parts[other].name()
                 );
                 let parts = [ring.min(other), ring.max(other)];
-                found.push((ring, Suggestion { parts, fit, why }));
+                found.push((ring, Suggestion { parts, fit, reason: why }));
             }
         }
     }
@@ -126,8 +126,9 @@ fn suggest_fit(bodies: &Bodies, rings: &BTreeSet<usize>, overlap: &Overlap) -> O
     let of = parts.map(|k| &bodies.assembly().parts()[k]);
     let solids = of.map(Part::solid);
     let tolerance = overlap.depth.map(|depth| two_digits_up(depth * TOLERANCE_FACTOR));
-    let with_fit =
-        |role, tolerance, why| Some(Suggestion { parts, fit: PairFit { role, tolerance }, why });
+    let with_fit = |role, tolerance, why| {
+        Some(Suggestion { parts, fit: PairFit { role, tolerance }, reason: why })
+    };
     let soft = of.iter().find(|part| is_called(part, &SOFT_NAMES));
     if let Some(soft) = soft {
         return with_fit(
@@ -144,29 +145,37 @@ fn suggest_fit(bodies: &Bodies, rings: &BTreeSet<usize>, overlap: &Overlap) -> O
         return with_fit(Some(Role::Thread), None, describe_helix(&thread, pitch));
     }
     let tolerance = Some(tolerance?);
-    if let Some(round) = Round::of(solids) {
+    if let Some(round) = RoundContact::of(solids) {
         let by = round.interference();
-        let why = format!("one lies around the other, at a radius of {}", short(round.radius()));
+        let why =
+            format!("one lies around the other, at a radius of {}", short_number(round.radius()));
         return if by > bodies.noise() {
-            with_fit(Some(Role::Press), tolerance, format!("{why}, by {} too large", short(by)))
+            with_fit(
+                Some(Role::Press),
+                tolerance,
+                format!("{why}, by {} too large", short_number(by)),
+            )
         } else {
             with_fit(None, tolerance, format!("{why}: chord errors"))
         };
     }
-    overlap.is_within(bodies, MAX_SHALLOW_DEPTH).then_some(())?;
+    overlap.is_at_most_share(bodies, MAX_SHALLOW_DEPTH).then_some(())?;
     with_fit(None, tolerance, "a shallow overlap".into())
 }
 
 /// Returns the thread of two parts and its pitch, or `None` if there is no helix.
 fn find_helix(solids: [&Solid; 2]) -> Option<(Thread, f64)> {
-    let thread = Thread::of(solids)?;
+    let thread = Thread::detect(solids)?;
     Some((thread, thread.pitch?))
 }
 
 fn describe_helix(thread: &Thread, pitch: f64) -> String {
     let hand = if pitch < 0.0 { ", left-handed" } else { "" };
-    let [hole, crest] = thread.radii.map(short);
-    format!("a helix of pitch {}{hand}, between radii of {hole} and {crest}", short(pitch.abs()))
+    let [hole, crest] = thread.radii.map(short_number);
+    format!(
+        "a helix of pitch {}{hand}, between radii of {hole} and {crest}",
+        short_number(pitch.abs())
+    )
 }
 
 /// Returns the threads with play among interlocked parts, for pairs that do not overlap and have no specified fit.
@@ -176,21 +185,24 @@ fn describe_helix(thread: &Thread, pitch: f64) -> String {
 ///
 /// # Errors
 /// Returns an error if the boxes of too many parts overlap.
-pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>, AssemblyError> {
-    let among = bodies.mask(stuck);
-    let mut pairs = bodies.neighbours(0.0)?;
+pub fn suggest_loose_threads(
+    bodies: &Bodies,
+    stuck: &[usize],
+) -> Result<Vec<Suggestion>, AssemblyError> {
+    let among = bodies.part_mask(stuck);
+    let mut pairs = bodies.neighbouring_pairs(0.0)?;
     let rings: BTreeSet<usize> = find_snaps(bodies).into_iter().map(|(ring, _)| ring).collect();
     pairs.retain(|&[a, b]| {
         let stuck = among[a] && among[b] && !bodies.overlaps(a, b);
-        let has_fit = bodies.assembly().pair(a, b).is_some();
+        let has_fit = bodies.assembly().pair_fit(a, b).is_some();
         stuck && !has_fit && !rings.contains(&a) && !rings.contains(&b)
     });
     let found = pairs.into_par_iter().filter_map(|parts| {
         let solids = parts.map(|k| bodies.assembly().parts()[k].solid());
         let mut workspace = Workspace::default();
         let mut stops = |d: DVec3, within: f64| {
-            let room = bodies.room(parts, d, None, StartOverlap::Refuse, &mut workspace);
-            matches!(room, Room::Blocked(stop) if stop.distance() <= within)
+            let room = bodies.free_travel(parts, d, None, StartOverlap::Refuse, &mut workspace);
+            matches!(room, FreeTravel::Blocked(stop) if stop.distance() <= within)
         };
         let mut held =
             |axis: DVec3, within| stops(axis, within) && stops(DVec3::ZERO - axis, within);
@@ -204,7 +216,7 @@ pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>
             thread.is_surrounded(solids[1 - thread.screw]) && held(thread.axis[1], pitch.abs());
         let fit = PairFit { role: Some(Role::Thread), tolerance: None };
         let why = format!("{}, with play", describe_helix(&thread, pitch));
-        holds.then_some(Suggestion { parts, fit, why })
+        holds.then_some(Suggestion { parts, fit, reason: why })
     });
     Ok(found.collect())
 }
@@ -213,11 +225,11 @@ pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>
 ///
 /// # Errors
 /// Returns the errors of [`Assembly::with_pair`].
-pub fn applied(
+pub fn apply_suggestions(
     mut assembly: Assembly,
     suggestions: &[Suggestion],
 ) -> Result<Assembly, AssemblyError> {
-    for suggestion in told(&assembly, suggestions) {
+    for suggestion in describe_suggestions(&assembly, suggestions) {
         assembly = assembly.with_note(format!("taken as suggested: {suggestion}"));
     }
     for Suggestion { parts, fit, .. } in suggestions {
@@ -228,8 +240,8 @@ pub fn applied(
 }
 
 /// Returns descriptions of the suggestions. Pairs of identical parts are combined.
-pub fn told(assembly: &Assembly, suggestions: &[Suggestion]) -> Vec<String> {
-    let likes = likes(assembly);
+pub fn describe_suggestions(assembly: &Assembly, suggestions: &[Suggestion]) -> Vec<String> {
+    let likes = first_identical_parts(assembly);
     let mut groups: BTreeMap<([usize; 2], Option<Role>), Vec<&Suggestion>> = BTreeMap::new();
     for suggestion in suggestions {
         let mut shapes = suggestion.parts.map(|k| likes[k]);
@@ -237,13 +249,13 @@ pub fn told(assembly: &Assembly, suggestions: &[Suggestion]) -> Vec<String> {
         groups.entry((shapes, suggestion.fit.role)).or_default().push(suggestion);
     }
     let words = |((_, role), all): (([usize; 2], Option<Role>), Vec<&Suggestion>)| {
-        let pairs = all.iter().map(|s| assembly.names(&s.parts).join(","));
+        let pairs = all.iter().map(|s| assembly.part_names(&s.parts).join(","));
         let role = role.map_or("tolerance", Role::name);
         let length = all.iter().filter_map(|s| s.fit.tolerance).reduce(f64::max);
         let length = length.map_or_else(String::new, |length| format!("={length}"));
         let count = if all.len() > 1 { format!("{} x ", all.len()) } else { String::new() };
         let pairs = pairs.collect::<Vec<_>>().join("; ");
-        format!("{count}{role}{length} of {pairs} ({})", all[0].why)
+        format!("{count}{role}{length} of {pairs} ({})", all[0].reason)
     };
     groups.into_iter().map(words).collect()
 }

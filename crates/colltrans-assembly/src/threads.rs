@@ -16,7 +16,7 @@ mod surface;
 use colltrans::Solid;
 use glam::{DVec2, DVec3};
 
-use crate::boxes::span;
+use crate::boxes::value_range;
 use crate::{cylinders, inertia};
 
 pub use seat::Seat;
@@ -56,7 +56,7 @@ pub struct Thread {
 impl Thread {
     /// Detects the thread of two parts; `None` if they do not form one. Of several axes, prefers one with a
     /// helix, then the one with the largest ratio of hole and crest.
-    pub fn of(parts: [&Solid; 2]) -> Option<Self> {
+    pub fn detect(parts: [&Solid; 2]) -> Option<Self> {
         let mut all: Vec<Self> =
             round_contacts(parts).filter_map(|round| round.to_thread(parts)).collect();
         // About any other axis, the hole is narrower and the crest wider.
@@ -89,7 +89,7 @@ impl Thread {
 
     /// Returns the screw with its thread moved inward to the hole; `None` if the result is not the surface of
     /// a solid.
-    pub fn core(&self, screw: &Solid) -> Option<Solid> {
+    pub fn thread_core(&self, screw: &Solid) -> Option<Solid> {
         let [point, axis] = self.axis;
         let [hole, crest] = self.radii;
         let inwards = |p: &DVec3| {
@@ -111,7 +111,7 @@ impl Thread {
 
 /// One part around another one, over their common length.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Round {
+pub struct RoundContact {
     /// Which of the two parts is the inner one: 0 or 1.
     inner: usize,
     /// A point on the axis, and the unit direction of the axis.
@@ -123,7 +123,7 @@ pub struct Round {
     length: f64,
 }
 
-impl Round {
+impl RoundContact {
     /// Detects one part around another one with an overlap smaller than that of a thread; `None` if there is
     /// none. Of several axes, returns the one with the longest contact relative to the radius.
     pub fn of(parts: [&Solid; 2]) -> Option<Self> {
@@ -264,10 +264,10 @@ impl Round {
 
 /// Iterates over the contacts of one part around the other, for all axes of cylinders and all principal axes
 /// of both parts.
-fn round_contacts(parts: [&Solid; 2]) -> impl Iterator<Item = Round> {
+fn round_contacts(parts: [&Solid; 2]) -> impl Iterator<Item = RoundContact> {
     let found = parts.into_iter().flat_map(|part| {
-        let cylinders = cylinders::axes(part).into_iter().map(|(_, axis)| axis);
-        cylinders.chain(inertia::axes(part)).collect::<Vec<_>>()
+        let cylinders = cylinders::cylinder_axes(part).into_iter().map(|(_, axis)| axis);
+        cylinders.chain(inertia::principal_axes(part)).collect::<Vec<_>>()
     });
     let mut axes: Vec<DVec3> = Vec::new();
     for axis in found {
@@ -277,12 +277,12 @@ fn round_contacts(parts: [&Solid; 2]) -> impl Iterator<Item = Round> {
     }
     axes.into_iter().flat_map(move |axis| {
         let contacts = |inner| {
-            let about = Round::about_direction(parts, inner, axis);
+            let about = RoundContact::about_direction(parts, inner, axis);
             // The principal axes of a threaded part differ slightly from the axis of the thread.
             let better = about.as_ref().and_then(|round| round.refined_direction(parts));
             about
                 .into_iter()
-                .chain(better.and_then(|axis| Round::about_direction(parts, inner, axis)))
+                .chain(better.and_then(|axis| RoundContact::about_direction(parts, inner, axis)))
         };
         contacts(0).chain(contacts(1)).collect::<Vec<_>>()
     })
@@ -290,7 +290,11 @@ fn round_contacts(parts: [&Solid; 2]) -> impl Iterator<Item = Round> {
 
 /// Checks whether a solid is rotationally symmetric about an axis, apart from its facets: in each row, the
 /// outer radius varies by at most `share` of the solid's radius.
-pub(crate) fn is_round(solid: &Solid, [point, axis]: [DVec3; 2], share: f64) -> bool {
+pub(crate) fn is_rotationally_symmetric(
+    solid: &Solid,
+    [point, axis]: [DVec3; 2],
+    share: f64,
+) -> bool {
     let Some([low, high]) = common_range(solid, solid, axis) else { return false };
     let flat = axial_projection(axis);
     let middle = flat(point);
@@ -318,7 +322,7 @@ fn axial_projections(solid: &Solid, axis: DVec3, [low, high]: [f64; 2]) -> Vec<D
 /// Returns the range along an axis that both parts share, without its ends; `None` if there is no common
 /// range.
 fn common_range(own: &Solid, other: &Solid, axis: DVec3) -> Option<[f64; 2]> {
-    let along = |solid: &Solid| span(solid.vertices().iter().map(|p| p.dot(axis)));
+    let along = |solid: &Solid| value_range(solid.vertices().iter().map(|p| p.dot(axis)));
     let ([a, b], [c, d]) = (along(own), along(other));
     let (low, high) = (a.max(c), b.min(d));
     let end = END_SHARE * (high - low);
@@ -375,14 +379,14 @@ mod tests {
             let screw = helical(None, |phase| 5.0 + 0.6 * wave(phase), pitch, 6);
             let nut = helical(Some(9.0), |phase| 5.1 + 0.6 * wave(phase), pitch, 3);
             for (order, k) in [([&screw, &nut], 0), ([&nut, &screw], 1)] {
-                let thread = Thread::of(order).unwrap();
+                let thread = Thread::detect(order).unwrap();
                 assert_eq!(thread.screw, k);
                 assert!(thread.axis[1].cross(DVec3::Z).length() < 2e-3, "{thread:?}");
                 let found = thread.pitch.unwrap();
                 // The hand does not depend on the end from which a thread is viewed.
                 assert!((found - pitch).abs() < 0.03, "{found}");
                 assert!((thread.radii[0] - 5.1).abs() < 0.06 && thread.radii[1] < 5.62);
-                let core = thread.core(&screw).unwrap();
+                let core = thread.thread_core(&screw).unwrap();
                 let [point, axis] = thread.axis;
                 let radius = |p: &DVec3| (*p - point).reject_from(axis).length();
                 let widest = core.vertices().iter().map(radius).fold(0.0, f64::max);
@@ -397,7 +401,7 @@ mod tests {
         for (pitch, found) in [(0.5 * around, true), (1.5 * around, false)] {
             let screw = helical(None, |phase| 5.0 + 0.6 * wave(phase), pitch, 2);
             let nut = helical(Some(9.0), |phase| 5.1 + 0.6 * wave(phase), pitch, 2);
-            assert_eq!(Thread::of([&screw, &nut]).unwrap().pitch.is_some(), found, "{pitch}");
+            assert_eq!(Thread::detect([&screw, &nut]).unwrap().pitch.is_some(), found, "{pitch}");
         }
     }
 
@@ -405,8 +409,8 @@ mod tests {
     fn pins_in_rings_are_not_threads() {
         let pin = helical(None, |_| 5.0, 1.0, 3);
         let ring = helical(Some(9.0), |_| 4.95, 1.0, 2);
-        assert!(Thread::of([&pin, &ring]).is_none(), "a press fit");
+        assert!(Thread::detect([&pin, &ring]).is_none(), "a press fit");
         let far = helical(None, |_| 2.0, 1.0, 3);
-        assert!(Thread::of([&far, &ring]).is_none());
+        assert!(Thread::detect([&far, &ring]).is_none());
     }
 }

@@ -11,12 +11,12 @@ const UNITS: [(&[&str], f64); 6] = [
 ];
 
 /// Returns the length of a unit in metres; `None` if the name is unknown.
-pub fn metres(name: &str) -> Option<f64> {
+pub fn unit_in_metres(name: &str) -> Option<f64> {
     UNITS.iter().find(|(names, _)| names.contains(&name)).map(|(_, metres)| *metres)
 }
 
 /// Returns the preferred name of the unit of this length; `None` if no listed unit has it.
-pub fn name(metres: f64) -> Option<&'static str> {
+pub fn unit_name(metres: f64) -> Option<&'static str> {
     let same = |(_, of): &&(&[&'static str], f64)| (of / metres - 1.0).abs() < 1e-9;
     UNITS.iter().find(same).map(|(names, _)| names[0])
 }

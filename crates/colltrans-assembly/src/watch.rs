@@ -57,36 +57,36 @@ impl<'a> Watch<'a> {
     }
 
     /// Returns the cancellation flag, or `None` if the run cannot be cancelled.
-    pub(crate) const fn flag(&self) -> Option<&'a AtomicBool> {
+    pub(crate) const fn cancel_flag(&self) -> Option<&'a AtomicBool> {
         self.cancel
     }
 
-    pub(crate) fn check(&self) -> Result<(), AssemblyError> {
+    pub(crate) fn check_cancelled(&self) -> Result<(), AssemblyError> {
         let cancelled = self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
         if cancelled { Err(AssemblyError::Cancelled) } else { Ok(()) }
     }
 
     /// Starts a stage with a total number of items.
-    pub(crate) fn stage(&self, stage: Stage, total: usize) -> Tally<'a> {
-        let tally = Tally { watch: *self, stage, total, done: AtomicUsize::new(0) };
+    pub(crate) fn start_stage(&self, stage: Stage, total: usize) -> StageProgress<'a> {
+        let tally = StageProgress { watch: *self, stage, total, done: AtomicUsize::new(0) };
         tally.notify(0);
         tally
     }
 }
 
 /// Progress of one stage.
-pub(crate) struct Tally<'a> {
+pub(crate) struct StageProgress<'a> {
     watch: Watch<'a>,
     stage: Stage,
     total: usize,
     done: AtomicUsize,
 }
 
-impl Tally<'_> {
+impl StageProgress<'_> {
     /// Counts a finished item. Returns an error if the run is cancelled.
-    pub(crate) fn step(&self) -> Result<(), AssemblyError> {
+    pub(crate) fn finish_item(&self) -> Result<(), AssemblyError> {
         self.notify(self.done.fetch_add(1, Ordering::Relaxed) + 1);
-        self.watch.check()
+        self.watch.check_cancelled()
     }
 
     fn notify(&self, done: usize) {

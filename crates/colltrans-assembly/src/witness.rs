@@ -1,16 +1,16 @@
 //! Memory of facet pairs that met, so that they are tested again first.
 //!
-//! A pair of facets that blocks along another direction also blocks the bodies there, at this distance or earlier. A
-//! cast of two facets costs about a hundredth of a cast of two bodies. A pair that stops a part along one direction
-//! stops it along many. If only the existence of a blocker matters, known pairs are tested first. They never prove
-//! that a direction is free.
+//! If two facets collide along a direction, their bodies collide there too, at the same distance or earlier. A cast of
+//! two facets costs about a hundredth of a cast of two bodies, and a pair that stops a part along one direction often
+//! stops it along others. If only the existence of a blocker matters, known pairs are therefore tested first. They
+//! never prove that a direction is free.
 
 use std::collections::HashMap;
 
 use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 
-use crate::bodies::{Bodies, Room, Stop};
+use crate::bodies::{Bodies, FreeTravel, Stop};
 
 /// A pair of facets that met along some direction.
 struct Witness {
@@ -48,12 +48,12 @@ impl Witnesses {
         start: StartOverlap,
     ) -> Option<Stop> {
         let kept = self.0.get(&pair)?.iter().filter(|w| w.normal.dot(d) > MIN_COSINE);
-        kept.filter_map(|w| bodies.stop_by(pair, w.triangles, d, start))
-            .find(|stop| stop.displaced.value <= within)
+        kept.filter_map(|w| bodies.stop_of_triangles(pair, w.triangles, d, start))
+            .find(|stop| stop.shrunk_translation.value <= within)
     }
 }
 
-/// State that is reused between queries that only ask for the existence of a blocker.
+/// State that is reused between queries for the mere existence of a blocker.
 #[derive(Default)]
 pub(crate) struct Memory {
     workspace: Workspace,
@@ -73,11 +73,11 @@ impl Memory {
         if witnesses.find_stop(bodies, pair, d, f64::INFINITY, start).is_some() {
             return true;
         }
-        let room = bodies.room(pair, d, None, start, workspace);
-        if let Room::Blocked(stop) = &room {
+        let room = bodies.free_travel(pair, d, None, start, workspace);
+        if let FreeTravel::Blocked(stop) = &room {
             witnesses.store(pair, stop);
         }
-        room != Room::Free
+        room != FreeTravel::Free
     }
 
     /// Checks whether a group never meets a present part outside of it.

@@ -9,13 +9,13 @@ use colltrans_mesh::Format;
 use glam::{DAffine3, DVec3};
 
 use crate::bodies::{Bodies, Fit};
-use crate::findings::Question;
-use crate::liaisons::liaisons;
-use crate::matrix::Matrix;
+use crate::findings::AnalysisRequest;
+use crate::liaisons::find_liaisons;
+use crate::matrix::ContactMatrix;
 use crate::part::{Assembly, Part, Piece};
 use crate::plan::disassemble;
-use crate::rooms::rooms;
 use crate::start::Start;
+use crate::travel::travels_of_parts;
 use crate::watch::Watch;
 use colltrans::Aabb;
 
@@ -46,10 +46,10 @@ fn plan_of_a_row_queries_at_most_four_pairs_per_part() {
     for count in [300, 600, 1_200] {
         let assembly = cube_assembly((0..count).map(|k| [2 * k, 0, 0]));
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-        let asked = || bodies.asked.swap(0, Relaxed);
+        let asked = || bodies.query_count.swap(0, Relaxed);
         asked();
-        let found = Question::default().ask(&bodies, Watch::default()).unwrap();
-        assert_eq!((found.plan.steps.len(), found.plan.last.len()), (count - 1, 1));
+        let found = AnalysisRequest::default().analyse(&bodies, Watch::default()).unwrap();
+        assert_eq!((found.plan.steps.len(), found.plan.base.len()), (count - 1, 1));
         // Each part needs about one query for each direction of the row; all leave upwards.
         let asked = asked();
         assert!(asked <= 4 * count, "{asked} pairs of {count} parts");
@@ -62,14 +62,14 @@ fn plan_of_a_row_visits_n_log_n_items() {
     for count in [250, 1_000] {
         let assembly = cube_assembly((0..count).map(|k| [2 * k, 0, 0]));
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-        let (question, watch) = (Question::default(), Watch::default());
-        let found = question.look(&bodies, watch).unwrap();
-        bodies.looks.store(0, Relaxed);
+        let (question, watch) = (AnalysisRequest::default(), Watch::default());
+        let found = question.analyse_without_plan(&bodies, watch).unwrap();
+        bodies.visit_count.store(0, Relaxed);
         let (matrix, finer) = (&found.matrix, &found.candidates.finer);
         let plan = disassemble(&bodies, matrix, finer, question.options, watch).unwrap();
-        assert_eq!((plan.steps.len(), plan.last.len()), (count - 1, 1));
+        assert_eq!((plan.steps.len(), plan.base.len()), (count - 1, 1));
         // Visits of parts, pairs and nodes of the tree over the parts, whose depth this is.
-        let (looks, depth) = (bodies.looks.load(Relaxed), count.ilog2() as usize);
+        let (looks, depth) = (bodies.visit_count.load(Relaxed), count.ilog2() as usize);
         assert!(looks <= 16 * count * depth, "{looks} of {count} parts");
     }
 }
@@ -100,31 +100,31 @@ fn count_pairs_ahead(boxes: &[Aabb], d: DVec3) -> usize {
 fn grid_of_3000_parts_queries_only_blocking_pairs() {
     let (assembly, watch) = (grid_assembly(), Watch::default());
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-    let asked = || bodies.asked.swap(0, Relaxed);
+    let asked = || bodies.query_count.swap(0, Relaxed);
     assert_eq!(bodies.len(), 3_000);
     // No two cubes are near, so overlaps and contacts need no query.
-    assert!(bodies.neighbours(0.5).unwrap().is_empty());
+    assert!(bodies.neighbouring_pairs(0.5).unwrap().is_empty());
     assert!(Start::new(&bodies, watch).unwrap().overlaps.is_empty());
-    assert!(liaisons(&bodies, watch).unwrap().is_empty());
+    assert!(find_liaisons(&bodies, watch).unwrap().is_empty());
     assert_eq!(asked(), 0);
     // The matrix computes each pair in a row once for both directions.
     let axes: Vec<DVec3> = DVec3::AXES.iter().flat_map(|&d| [d, -d]).collect();
     let all = vec![true; 3_000];
     let start = StartOverlap::Refuse;
-    let matrix = Matrix::new(&bodies, &axes, &all, start, watch).unwrap();
+    let matrix = ContactMatrix::new(&bodies, &axes, &all, start, watch).unwrap();
     let in_rows: usize = GRID.iter().map(|n| 3_000 / n * (n * (n - 1) / 2)).sum();
     assert_eq!(asked(), in_rows);
-    let met: usize = (0..6).map(|k| matrix.meetings(k).len()).sum();
+    let met: usize = (0..6).map(|k| matrix.contacts_along(k).len()).sum();
     assert_eq!(met, 2 * in_rows);
     // Free travel queries the nearest part, and parts whose boxes may be equally near.
-    rooms(&bodies, &axes, start, watch).unwrap();
+    travels_of_parts(&bodies, &axes, start, watch).unwrap();
     let nearest = asked();
     let blocked: usize = GRID.iter().map(|n| 2 * 3_000 / n * (n - 1)).sum();
     assert!((blocked..=blocked + blocked / 10).contains(&nearest), "{nearest} of {blocked}");
     // Along oblique directions, at most the pairs whose boxes meet are queried.
     let boxes: Vec<Aabb> = (0..3_000).map(|k| bodies.bounds(k)).collect();
     for d in [DVec3::new(0.6, 0.0, -0.8), DVec3::new(2.0, -3.0, 6.0) / 7.0] {
-        rooms(&bodies, &[d], start, watch).unwrap();
+        travels_of_parts(&bodies, &[d], start, watch).unwrap();
         let (count, most) = (asked(), count_pairs_ahead(&boxes, d));
         assert!(count > 1_000 && count <= most && most < 100_000, "{count} of {most}");
     }

@@ -42,7 +42,7 @@ use values::{angles, bytes, factor, length, picture, place, proof, solver, start
 ///
 /// `colltrans info MESH` describes a mesh. Distance of two bodies: `colltrans distance A B`. Free travel of a
 /// part with holes: `colltrans clearance MOVING --from FIXED --direction -z`. First contact of convex
-/// bodies: `colltrans cast MOVING FIXED --direction -z`. All answers have proven bounds.
+/// bodies: `colltrans cast MOVING FIXED --direction -z`. Bounds in answers are proven.
 #[derive(Debug, Parser)]
 #[command(name = "colltrans", version, max_term_width = help::MAX_WIDTH, help_template = groups::template(&Command::augment_subcommands(clap::Command::new("colltrans"))))]
 pub(crate) struct Arguments {
@@ -87,8 +87,8 @@ pub(crate) enum Command {
     /// Compute when a mesh that turns, unscrews, swings or is thrown first touches another
     ///
     /// The time is 0 at the start and 1 at the end of the motion. Its bounds are proven for the whole motion,
-    /// not for samples. Both sides may move. All meshes convex: convex bodies. Otherwise: parts, as for
-    /// `clearance`.
+    /// not for samples. Both sides may move. If all meshes are convex, they are convex bodies, otherwise parts,
+    /// as for `clearance`.
     #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[MOTION_NOTES]), mut_arg("hull", |hull| hull.hide_short_help(true)))]
     Motion(Box<MotionArguments>),
     /// Compute which links of a robot first touch each other or a scene on a path
@@ -189,7 +189,7 @@ pub(crate) struct PairArguments {
     pub(crate) directions: DirectionArguments,
     /// The minimum gap: the bodies count as touching at this distance, in the unit of the meshes
     #[arg(long, value_name = "GAP", allow_hyphen_values = true, value_parser = length, default_value = "0")]
-    pub(crate) keep: f64,
+    pub(crate) min_gap: f64,
     /// Print the answer as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
@@ -438,7 +438,7 @@ impl PairArguments {
     /// Returns the options of the solver `cta`.
     ///
     /// # Errors
-    /// There are such options for another solver.
+    /// `--start` or `--until` is given, and the solver is not `cta`.
     pub(crate) fn narrowing(&self) -> Result<cta::Options, Failure> {
         let NarrowingArguments { start, until } = self.narrowing;
         if self.solver != Solver::Cta && (start.is_some() || until.is_some()) {

@@ -15,16 +15,18 @@ use std::path::Path;
 
 use colltrans::glam::DVec3;
 use colltrans::solid::StartOverlap;
-use colltrans_assembly::candidates::{Candidates, Choice};
+use colltrans_assembly::candidates::{CandidateOptions, Candidates};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::plan::PlanOptions;
-use colltrans_assembly::rooms::{PartRoom, rooms};
-use colltrans_assembly::sphere::{Sphere, unit};
+use colltrans_assembly::sphere::{Sphere, normalized_direction};
 use colltrans_assembly::suggest;
-use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, Question, Stage, Watch};
+use colltrans_assembly::travel::{PartTravel, travels_of_parts};
+use colltrans_assembly::{
+    AnalysisRequest, Assembly, AssemblyError, Bodies, Fit, Ignored, Stage, Watch,
+};
 use colltrans_assembly_io::ReadError;
 use colltrans_assembly_io::read::{self, Geometry, ReadOptions};
-use colltrans_mesh::body::Refused;
+use colltrans_mesh::body::BodyError;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::{AssemblyArguments, direction};
@@ -47,12 +49,12 @@ fn plan_in_pool(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let assembly = read_assembly(arguments)?;
     let mapped_groups = named_groups(&arguments.map, &assembly)?;
     let removed_groups = named_groups(&arguments.free, &assembly)?;
-    let wanted = assembly.group(&arguments.asked.remove)?;
+    let wanted = assembly.parts_named(&arguments.asked.remove)?;
     let times = constraints::handling_times(arguments.times.as_deref())?;
     output::check_output_paths(arguments, &assembly)?;
     let fit = match (arguments.tolerance, arguments.keep_apart) {
         (Some(tolerance), _) => Fit::Tolerance(tolerance),
-        (None, Some(length)) => Fit::Apart(length),
+        (None, Some(length)) => Fit::MinGap(length),
         (None, None) => Fit::default_for(&assembly),
     };
     let bar = ProgressBar::new(0);
@@ -69,21 +71,21 @@ fn plan_in_pool(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let watch = Watch::default().with_progress(&progress);
     let question = plan_question(arguments, &sampled, wanted);
     let given_bodies = Bodies::new(&assembly, fit)?;
-    let mut found = question.ask(&given_bodies, watch)?;
+    let mut found = question.analyse(&given_bodies, watch)?;
     let suggested;
     let suggested_bodies;
-    if arguments.roles.auto && !found.suggestions.is_empty() && !found.plan.stuck.is_empty() {
-        suggested = suggest::applied(assembly.clone(), &found.suggestions)?;
+    if arguments.roles.auto && !found.suggestions.is_empty() && !found.plan.interlocked.is_empty() {
+        suggested = suggest::apply_suggestions(assembly.clone(), &found.suggestions)?;
         suggested_bodies = Bodies::new(&suggested, fit)?;
-        found = question.ask(&suggested_bodies, watch)?;
+        found = question.analyse(&suggested_bodies, watch)?;
     }
     let bodies = found.bodies;
-    found.more = free_travels(bodies, &sampled, start_overlap(arguments), watch)?;
+    found.further_travels = free_travels(bodies, &sampled, start_overlap(arguments), watch)?;
     found.maps =
         removal_maps(bodies, &mapped_groups, &found.candidates, start_overlap(arguments), watch)?;
     if arguments.output.is_some() {
         // matrix.csv has all pairs.
-        found.matrix.complete(watch)?;
+        found.matrix.compute_all(watch)?;
     }
     found.times = times;
     let with_proofs = arguments.output.is_some();
@@ -95,21 +97,26 @@ fn plan_in_pool(arguments: &AssemblyArguments) -> Result<(), Failure> {
 
 /// Returns the question about the plan. `sampled` are the directions of the file and the samples, `wanted` the parts to
 /// remove.
-fn plan_question(arguments: &AssemblyArguments, sampled: &[DVec3], wanted: Vec<usize>) -> Question {
-    let choice =
-        Choice::default().with_given(arguments.direction.clone()).with_search(!arguments.only);
+fn plan_question(
+    arguments: &AssemblyArguments,
+    sampled: &[DVec3],
+    wanted: Vec<usize>,
+) -> AnalysisRequest {
+    let choice = CandidateOptions::default()
+        .with_given(arguments.direction.clone())
+        .with_search(!arguments.only);
     let samples = if arguments.only { 0 } else { PlanOptions::default().samples };
     let options = PlanOptions::default()
         .with_start(start_overlap(arguments))
         .with_samples(samples)
-        .with_legs(arguments.legs)
+        .with_max_moves(arguments.legs)
         .with_proofs(!arguments.no_proofs && !arguments.only)
         .with_looks(arguments.work.max_looks());
-    let question = Question::default()
+    let question = AnalysisRequest::default()
         .with_choice(choice)
         .with_finer(sampled.to_vec())
         .with_options(options)
-        .with_wanted(wanted);
+        .with_selected(wanted);
     match arguments.gravity {
         Some(gravity) => question.with_gravity(gravity),
         None => question,
@@ -167,12 +174,12 @@ fn read_assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
 /// Returns the option of `assembly` and `path` that avoids an error; empty if there is none.
 pub(crate) fn read_error_hint(error: &ReadError) -> &'static str {
     match error {
-        ReadError::Outside { .. } => " (--allow-outside reads it)",
-        ReadError::Missing { .. } => {
+        ReadError::OutsideFolder { .. } => " (--allow-outside reads it)",
+        ReadError::MissingMeshes { .. } => {
             " (--package DIR names the folder of packages, --skip-missing skips missing meshes)"
         }
         ReadError::Assembly {
-            source: AssemblyError::Part { source: Refused::Mended(_), .. },
+            source: AssemblyError::Part { source: BodyError::NeedsRepair(_), .. },
             ..
         } => " (without --as-is it is repaired)",
         _ => "",
@@ -200,7 +207,7 @@ fn sampled_directions(arguments: &AssemblyArguments) -> Result<Vec<DVec3>, Failu
                 Failure::new(Code::Input, format!("{}: line {}: {reason}", path.display(), k + 1))
             };
             let direction = direction(line).map_err(refused)?;
-            all.push(unit(direction).map_err(|e| refused(e.to_string()))?);
+            all.push(normalized_direction(direction).map_err(|e| refused(e.to_string()))?);
         }
     }
     if let Some(samples) = arguments.samples.filter(|n| *n > 0) {
@@ -216,7 +223,7 @@ fn named_groups(
 ) -> Result<Vec<(String, Vec<usize>)>, Failure> {
     let group = |names: &String| {
         let parts: Vec<&str> = names.split(',').collect();
-        Ok((names.clone(), assembly.group(&parts)?))
+        Ok((names.clone(), assembly.parts_named(&parts)?))
     };
     given.iter().map(group).collect()
 }
@@ -227,11 +234,11 @@ fn free_travels(
     directions: &[DVec3],
     start: StartOverlap,
     watch: Watch,
-) -> Result<Vec<(DVec3, Vec<PartRoom>)>, Failure> {
+) -> Result<Vec<(DVec3, Vec<PartTravel>)>, Failure> {
     if directions.is_empty() {
         return Ok(Vec::new());
     }
-    let by_part = rooms(bodies, directions, start, watch)?;
+    let by_part = travels_of_parts(bodies, directions, start, watch)?;
     let column = |k: usize| by_part.iter().map(|row| row[k]).collect();
     Ok(directions.iter().enumerate().map(|(k, d)| (*d, column(k))).collect())
 }
@@ -251,7 +258,7 @@ fn removal_maps(
         for &k in group {
             mask[k] = true;
         }
-        let own = found.finer.iter().filter(|f| f.concerns(&mask)).map(|f| f.direction);
+        let own = found.finer.iter().filter(|f| f.concerns_any_of(&mask)).map(|f| f.direction);
         let directions: Vec<DVec3> = found.directions().into_iter().chain(own).collect();
         maps.push((name.clone(), RemovalMap::new(bodies, group, &directions, options, watch)?));
     }
@@ -261,18 +268,18 @@ fn removal_maps(
 impl From<AssemblyError> for Failure {
     fn from(error: AssemblyError) -> Self {
         let code = match error {
-            AssemblyError::Length { .. }
-            | AssemblyError::Direction { .. }
+            AssemblyError::InvalidValue { .. }
+            | AssemblyError::InvalidDirection { .. }
             | AssemblyError::UnknownPart { .. }
             | AssemblyError::SamePart { .. }
-            | AssemblyError::Order { .. }
-            | AssemblyError::Subassemblies { .. }
+            | AssemblyError::CyclicOrder { .. }
+            | AssemblyError::OverlappingSubassemblies { .. }
             | AssemblyError::TooFew { .. }
             | AssemblyError::NoTolerance { .. }
             | AssemblyError::NoFit { .. }
-            | AssemblyError::Fixed { .. }
-            | AssemblyError::Removal { .. }
-            | AssemblyError::Angle { .. } => Code::Usage,
+            | AssemblyError::FixedAndRemoved { .. }
+            | AssemblyError::InvalidRemoval { .. }
+            | AssemblyError::InvalidAngle { .. } => Code::Usage,
             AssemblyError::Replay { .. } | AssemblyError::Cancelled => Code::Query,
             _ => Code::Input,
         };

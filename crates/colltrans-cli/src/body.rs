@@ -4,7 +4,7 @@ use std::path::Path;
 
 use colltrans::solid::SolidError;
 use colltrans::{BuildError, ConvexPolyhedron};
-use colltrans_mesh::body::{BodyOptions, Excess, LoadError, Loaded, Note, Refused, Take};
+use colltrans_mesh::body::{BodyError, BodyKind, BodyOptions, Excess, LoadError, Loaded, Note};
 
 /// A convex body of a mesh file, with the differences between them.
 #[derive(Debug)]
@@ -56,7 +56,7 @@ pub(crate) fn note_of_file(path: &Path, note: &Note) -> String {
 /// Checks whether a mesh that is not convex can be read as a closed part or as an open surface.
 pub(crate) fn can_be_part(error: &LoadError) -> bool {
     let LoadError::Body { source, .. } = error else { return false };
-    source.instead().iter().any(|take| matches!(take, Take::Solid | Take::Open))
+    source.alternatives().iter().any(|take| matches!(take, BodyKind::Solid | BodyKind::Open))
 }
 
 /// Returns the error of a file with a hint at options that avoid it.
@@ -68,23 +68,23 @@ pub(crate) fn load_error_message(error: &LoadError) -> String {
 }
 
 /// Returns a hint at the options that avoid an error; empty if there are none.
-pub(crate) fn option_hint(refused: &Refused) -> &'static str {
-    match (refused, refused.instead()) {
-        (Refused::Convex(BuildError::NotConvex { .. }), _) => {
+pub(crate) fn option_hint(refused: &BodyError) -> &'static str {
+    match (refused, refused.alternatives()) {
+        (BodyError::Convex(BuildError::NotConvex { .. }), _) => {
             "; `colltrans clearance` accepts parts that are not convex, --hull takes the convex hull, \
              --convex-tolerance permits deeper dents"
         }
-        (Refused::Convex(_), [Take::Solid, ..]) => {
+        (BodyError::Convex(_), [BodyKind::Solid, ..]) => {
             "; `colltrans clearance` accepts parts that are not convex, --hull takes the convex hull of \
              its vertices"
         }
-        (Refused::Convex(_), [_, ..]) => {
+        (BodyError::Convex(_), [_, ..]) => {
             "; --merge-tolerance closes gaps, --hull takes the convex hull of its vertices"
         }
-        (Refused::Solid(SolidError::Empty), _) => {
+        (BodyError::Solid(SolidError::Empty), _) => {
             "; --hull takes the convex hull of its vertices, with or without faces"
         }
-        (Refused::Solid(_), [Take::Open, ..]) => {
+        (BodyError::Solid(_), [BodyKind::Open, ..]) => {
             "; --merge-tolerance closes gaps, `clearance --open` accepts it as a surface without an interior"
         }
         _ => "",

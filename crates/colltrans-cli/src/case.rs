@@ -16,7 +16,7 @@ pub(crate) fn cast_failure(error: QueryError, cast: &Cast<'_>) -> Failure {
 
 /// Returns the failure of a motion. Saves the query if it did not converge; the message then names the file.
 pub(crate) fn motion_failure(error: QueryError, cast: &MotionCast<'_>) -> Failure {
-    failure_with_case(error, || MotionCase::of(cast).to_json())
+    failure_with_case(error, || MotionCase::from_cast(cast).to_json())
 }
 
 /// Returns the failure of a query, whose case is `json`.
@@ -30,7 +30,8 @@ fn failure_with_case(error: QueryError, json: impl FnOnce() -> String) -> Failur
     }
 }
 
-/// Writes a query to a new file in the working directory. Returns its name; `None` if it cannot be written.
+/// Writes a query to a new file in the working directory. Returns its name; `None` if it cannot be written, or if
+/// all names up to `colltrans-case-999.json` are in use.
 fn save_case(json: &str) -> Option<PathBuf> {
     for number in 1..1000 {
         let path = PathBuf::from(format!("colltrans-case-{number}.json"));

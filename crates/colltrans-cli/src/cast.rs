@@ -63,11 +63,11 @@ impl<'a> Request<'a> {
             .with_solver(arguments.solver)
             .with_narrowing(arguments.narrowing()?)
             .with_graze_tolerance(arguments.graze_tolerance)
-            .with_keep(arguments.keep);
+            .with_min_gap(arguments.min_gap);
         let [moving, fixed] = [0, 1].map(|k| parts[k].body.at(poses[k]));
         let cast = |direction| Cast::new(moving, fixed, direction)?.with_options(options);
         let answer_cast = |cast: &Cast<'_>| -> Result<(Answer, Line), Failure> {
-            let answer = question.ask(cast).map_err(|error| case::cast_failure(error, cast))?;
+            let answer = question.answer(cast).map_err(|error| case::cast_failure(error, cast))?;
             Ok((answer, Line::from(answer.record(cast)).with_parts(parts)))
         };
         let all = match directions {

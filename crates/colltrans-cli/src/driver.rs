@@ -2,6 +2,7 @@
 //!
 //! A question describes its outputs in [`AnswerOutputs`]. [`OutputTargets::write_answer`] computes only
 //! those that the command line requests. [`answer_directions`] prints one line for each of many directions.
+//! In contrast, `colltrans path` writes its proof, and `colltrans assembly` its files, before the answer is printed.
 
 use std::path::{Path, PathBuf};
 
@@ -57,7 +58,7 @@ impl<'a> OutputTargets<'a> {
     /// Prints the answer, then writes its proof and its picture.
     ///
     /// # Errors
-    /// The proof has an error, or an output cannot be written.
+    /// The proof or the picture cannot be computed, or an output cannot be written.
     pub(crate) fn write_answer<R: Serialize>(
         self,
         answer: AnswerOutputs<
@@ -88,7 +89,7 @@ impl<'a> OutputTargets<'a> {
 /// Prints one line for each direction.
 ///
 /// # Errors
-/// A direction has no answer. The error is returned after the last line.
+/// A line cannot be printed, or a direction has no answer. The latter error is returned after the last line.
 pub(crate) fn answer_directions(
     as_json: bool,
     directions: Vec<DVec3>,

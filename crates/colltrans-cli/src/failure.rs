@@ -97,9 +97,9 @@ impl Failure {
     }
 }
 
-impl From<colltrans::free::FreeError> for Failure {
-    fn from(error: colltrans::free::FreeError) -> Self {
-        use colltrans::free::FreeError::{Open, Query};
+impl From<colltrans::removal::directions::FreeError> for Failure {
+    fn from(error: colltrans::removal::directions::FreeError) -> Self {
+        use colltrans::removal::directions::FreeError::{Open, Query};
         match error {
             Query(error) => error.into(),
             Open { .. } => Self::new(Code::Input, error.to_string()),
@@ -111,16 +111,16 @@ impl From<colltrans::free::FreeError> for Failure {
 impl From<colltrans::QueryError> for Failure {
     fn from(error: colltrans::QueryError) -> Self {
         use colltrans::QueryError::{
-            Direction, GrazeTolerance, Keep, Length, NoSolid, NothingLeft, Obstacle,
+            Direction, GrazeTolerance, Length, MinGap, NotASolid, NothingLeft, Obstacle,
         };
         let code = match error {
             Direction { .. }
             | GrazeTolerance { .. }
-            | Keep { .. }
+            | MinGap { .. }
             | Length { .. }
             | NothingLeft { .. } => Code::Usage,
-            NoSolid { .. } => Code::Input,
-            Obstacle { ref reason, .. } if matches!(**reason, NoSolid { .. }) => Code::Input,
+            NotASolid { .. } => Code::Input,
+            Obstacle { ref reason, .. } if matches!(**reason, NotASolid { .. }) => Code::Input,
             _ => Code::Query,
         };
         Self::new(code, error.to_string())

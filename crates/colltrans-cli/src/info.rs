@@ -8,7 +8,7 @@ use colltrans_mesh::{Mesh, NumberFormat, ReadOptions};
 
 use crate::args::InfoArguments;
 use crate::failure::{Code, Failure, print};
-use crate::numbers::{about, counted, known, six_digits, vector};
+use crate::numbers::{count_text, rounded_to_error, rounded_up, six_digits, vector};
 use crate::report::push_line;
 use crate::solid;
 use crate::terminal::escape_line;
@@ -48,12 +48,12 @@ fn describe_mesh(path: &Path, mesh: &Mesh, convex_tolerance: Option<f64>) -> Str
     if let Some(why) = &not_finite {
         push_line(&mut text, "extent", why);
     } else if let Some([low, high]) = mesh.bounds() {
-        let [x, y, z] = (high - low).to_array().map(|c| known(c, 1e-14 * mesh.extent()));
+        let [x, y, z] = (high - low).to_array().map(|c| rounded_to_error(c, 1e-14 * mesh.extent()));
         push_line(&mut text, "extent", &format!("{x} x {y} x {z}"));
         push_line(&mut text, "", &format!("from {} to {}", vector(low), vector(high)));
     }
     if mesh.format != NumberFormat::Double {
-        let what = format!("{}, known to within {}", mesh.format, about(mesh.precision));
+        let what = format!("{}, known to within {}", mesh.format, rounded_up(mesh.precision));
         push_line(&mut text, "coordinates", &what);
     }
     if let Some(merged) = Note::merged(mesh) {
@@ -88,12 +88,12 @@ fn describe_mesh(path: &Path, mesh: &Mesh, convex_tolerance: Option<f64>) -> Str
         Ok(hull) => {
             push_line(&mut text, "hull", &hull_counts(&hull));
             push_line(&mut text, "hull volume", &volume_text(hull.volume()));
-            let excess = Excess::of(mesh, &hull);
+            let excess = Excess::measure(mesh, &hull);
             let tolerance = dent_tolerance(mesh, convex_tolerance);
             if !mesh.faces.is_empty() && !excess.is_within(tolerance, mesh.extent()) {
                 push_line(&mut text, "hull exceeds", &excess.to_string());
             }
-            let error = about(hull.hull_error());
+            let error = rounded_up(hull.hull_error());
             push_line(
                 &mut text,
                 "hull error",
@@ -108,13 +108,13 @@ fn describe_mesh(path: &Path, mesh: &Mesh, convex_tolerance: Option<f64>) -> Str
 /// Returns lines about the parts into which `assembly` splits the mesh; none if it stays one part.
 fn part_lines(mesh: &Mesh) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
-    let named: Vec<String> = mesh.named().into_iter().map(|(name, _)| name).collect();
+    let named: Vec<String> = mesh.named_parts().into_iter().map(|(name, _)| name).collect();
     if !named.is_empty() {
         let more = if named.len() > MAX_NAMES { ", ..." } else { "" };
         let first = named[..named.len().min(MAX_NAMES)].join(", ");
         lines.push(("names", format!("{}: {}{more}", named.len(), escape_line(first))));
     }
-    if let Ok(Some(split)) = body::bodies(mesh, &BodyOptions::default()) {
+    if let Ok(Some(split)) = body::split_bodies(mesh, &BodyOptions::default()) {
         let what = format!("{}, split with `assembly --split bodies`", split.meshes.len());
         lines.push(("bodies", what));
     }
@@ -152,7 +152,7 @@ fn face_count(mesh: &Mesh) -> String {
 
 /// Returns a volume with the digits that rounding leaves: it is a sum of many products.
 fn volume_text(volume: f64) -> String {
-    known(volume, 1e-13 * volume)
+    rounded_to_error(volume, 1e-13 * volume)
 }
 
 /// Describes whether the surface is closed, or one of its open edges.
@@ -162,7 +162,7 @@ fn closedness(mesh: &Mesh) -> String {
         [] => "closed".into(),
         [[a, b], ..] => format!(
             "not closed: {} no oppositely directed partner, one of them from vertex {a} to vertex {b}",
-            counted(open.len(), "edge has", "edges have")
+            count_text(open.len(), "edge has", "edges have")
         ),
     }
 }
@@ -179,8 +179,8 @@ fn convexity_text(mesh: &Mesh, face: usize, depth: f64, convex_tolerance: Option
     format!(
         "{verdict}: face {face} lies {} below the hull, {} of the extent (tolerated: {})",
         six_digits(depth),
-        about(relative),
-        about(tolerance)
+        rounded_up(relative),
+        rounded_up(tolerance)
     )
 }
 
@@ -194,8 +194,8 @@ fn hull_counts(hull: &ConvexPolyhedron) -> String {
     };
     format!(
         "{shape}{}, {}, {}",
-        counted(hull.vertices().len(), "vertex", "vertices"),
-        counted(hull.edge_count(), "edge", "edges"),
-        counted(hull.face_count(), "face", "faces")
+        count_text(hull.vertices().len(), "vertex", "vertices"),
+        count_text(hull.edge_count(), "edge", "edges"),
+        count_text(hull.face_count(), "face", "faces")
     )
 }

@@ -21,8 +21,8 @@ pub(crate) enum Identity {
 }
 
 impl Identity {
-    /// Returns the identity of a regular file; `None` if there is none of this name. Folders, devices and pipes are
-    /// not overwritten and have none.
+    /// Returns the identity of a regular file; `None` if there is no regular file with this name. Folders, devices and
+    /// pipes have no identity, because an output does not overwrite them.
     pub(crate) fn of_path(path: &Path) -> Option<Self> {
         let metadata = path.metadata().ok()?;
         if metadata.is_file() { Self::of_regular_file(path, &metadata).ok() } else { None }
@@ -50,7 +50,7 @@ pub(crate) fn overwritten_input<'a>(output: &Path, inputs: &[&'a Path]) -> Optio
 /// Checks that a picture does not overwrite an input.
 ///
 /// # Errors
-/// It would.
+/// The picture would overwrite an input.
 pub(crate) fn check_picture_path(picture: Option<&Path>, inputs: &[&Path]) -> Result<(), Failure> {
     picture.map_or(Ok(()), |picture| {
         check_output_path(picture, inputs, "give the picture another name")
@@ -60,7 +60,7 @@ pub(crate) fn check_picture_path(picture: Option<&Path>, inputs: &[&Path]) -> Re
 /// Checks that a proof overwrites neither an input nor the picture.
 ///
 /// # Errors
-/// It would.
+/// The proof would overwrite an input, or has the path of the picture.
 pub(crate) fn check_proof_path(
     proof: Option<&Path>,
     picture: Option<&Path>,

@@ -26,8 +26,11 @@ pub(crate) fn read_convex(
     Ok([load(0)?, load(1)?])
 }
 
-/// Reads each file as a convex body. Returns `None` if the bodies are to be read as parts: because the
-/// command line requests parts, or because a mesh is not convex and the command line leaves the kind open.
+/// Reads each file as a convex body. Returns `None` if the bodies are to be read as parts. This is the case if the
+/// command line requires parts, or if it requires no kind and a mesh cannot become a convex body but can become a part.
+///
+/// # Errors
+/// A file cannot be read, or its mesh cannot become a body of a kind that the command line permits.
 pub(crate) fn read_if_convex(
     inputs: &InputPair<'_>,
     options: &[BodyOptions; 2],

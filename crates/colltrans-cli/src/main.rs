@@ -133,7 +133,7 @@ fn usage_tip(error: &clap::Error) -> Option<String> {
         return None;
     }
     let Some(long) = unknown.strip_prefix("--") else {
-        let is_mesh = colltrans_mesh::Format::of_path(Path::new(unknown)).is_ok();
+        let is_mesh = colltrans_mesh::Format::from_path(Path::new(unknown)).is_ok();
         let tip = "`colltrans clearance MOVING --among MESH...` takes several meshes as a scene";
         return is_mesh.then(|| tip.to_owned());
     };

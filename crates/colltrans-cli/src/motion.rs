@@ -1,6 +1,6 @@
 //! `colltrans motion`: the first contact of meshes that move along given motions.
 //!
-//! Convex meshes become convex bodies, all others parts.
+//! If all meshes are convex and no option requires parts, they become convex bodies, otherwise parts.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ use crate::case;
 use crate::driver::{AnswerOutputs, OutputTargets};
 use crate::failure::{Code, Failure, note};
 use crate::load;
-use crate::numbers::{counted, known, known_vector, number, unit_vector};
+use crate::numbers::{count_text, known_vector, number, rounded_to_error, unit_vector};
 use crate::picture::{MotionPicture, Surface, draw_motion};
 use crate::record::Line;
 use crate::report::{
@@ -46,8 +46,8 @@ fn answer_convex(
     bodies: &[Vec<Part>; 2],
     motions: &[Motion; 2],
 ) -> Result<(), Failure> {
-    if arguments.tolerance.is_some() && arguments.keep > 0.0 {
-        let why = "convex meshes accept either --keep or --tolerance; drop one of them";
+    if arguments.tolerance.is_some() && arguments.min_gap > 0.0 {
+        let why = "convex meshes accept either --min-gap or --tolerance; drop one of them";
         return Err(Failure::new(Code::Usage, why));
     }
     load::print_notes(&arguments.places, bodies.iter().flatten().flat_map(|part| &part.notes));
@@ -73,7 +73,7 @@ fn answer_parts(
     files: [&[PathBuf]; 2],
     motions: &[Motion; 2],
 ) -> Result<(), Failure> {
-    let MotionArguments { tolerance, keep, ignore_start_overlaps, .. } = *arguments;
+    let MotionArguments { tolerance, min_gap, ignore_start_overlaps, .. } = *arguments;
     if targets.save_proof.is_some() && ignore_start_overlaps {
         let why =
             "--save-proof cannot prove an answer with --ignore-start-overlaps; drop one of them";
@@ -82,7 +82,7 @@ fn answer_parts(
     let loaded = load::read_parts(files, &arguments.part_options())?;
     load::print_notes(&arguments.places, loaded.iter().flat_map(|body| &body.notes));
     let (bodies, clears) = (loaded.each_ref(), arguments.clearance);
-    let query = PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, keep };
+    let query = PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, min_gap };
     let answered = query.answer();
     let line = Line::from_record(
         answered.map_err(|error| solid::query_failure(error, bodies, tolerance))?,
@@ -133,7 +133,8 @@ struct PairAnswer {
 }
 
 /// Returns the first event of all pairs, and the proofs of all pairs if `--save-proof` is given. The first event is an
-/// overlap at the start, otherwise the contact with the least lower bound of the time.
+/// overlap at the start, otherwise the one with the least lower bound of its time. If it is grazing or undecided, and
+/// other pairs are proven to meet, it gets the least upper bound of their times, with a note.
 ///
 /// # Errors
 /// A query fails.
@@ -151,8 +152,8 @@ fn first_of_pairs(
             let cast =
                 MotionCast::new(moving.body.along(&motions[0]), fixed.body.along(&motions[1]))?;
             let cast = match arguments.tolerance {
-                Some(depth) => cast.tolerating(depth)?,
-                None => cast.keeping(arguments.keep)?,
+                Some(depth) => cast.with_tolerance(depth)?,
+                None => cast.with_min_gap(arguments.min_gap)?,
             };
             let failed = |error| case::motion_failure(error, &cast);
             let mut undecided = None;
@@ -172,7 +173,7 @@ fn first_of_pairs(
                 if arguments.save_proof.is_some() {
                     proofs.push(ProofFile::of_motion(&cast, &outcome));
                 }
-                MotionRecord::of(&outcome, &cast)
+                MotionRecord::from_outcome(&outcome, &cast)
             };
             let line = Line::from_record(record).with_parts([moving, fixed]);
             let found = PairAnswer { line, pair: [i, j], undecided };
@@ -253,7 +254,7 @@ pub(crate) fn answer_text(line: &Line<MotionRecord>, motions: [&Motion; 2]) -> S
             );
         }
         push_pose(&mut text, "pose", motions[0], time.lower);
-        if *motions[1] != Motion::still(motions[1].start()) {
+        if *motions[1] != Motion::at_rest(motions[1].start_pose()) {
             push_pose(&mut text, "fixed pose", motions[1], time.lower);
         }
     }
@@ -265,8 +266,8 @@ pub(crate) fn answer_text(line: &Line<MotionRecord>, motions: [&Motion; 2]) -> S
     }
     push_features(&mut text, record.features.as_ref(), [None; 2]);
     if let Some(planes) = record.planes {
-        let planes = counted(planes, "plane", "planes");
-        let samples = counted(record.looks as usize, "distance sample", "distance samples");
+        let planes = count_text(planes, "plane", "planes");
+        let samples = count_text(record.looks as usize, "distance sample", "distance samples");
         push_line(&mut text, "proof", &format!("{planes}, found with {samples}"));
     }
     if let Some(tolerance) = record.tolerance {
@@ -278,7 +279,7 @@ pub(crate) fn answer_text(line: &Line<MotionRecord>, motions: [&Motion; 2]) -> S
         &record.start_overlaps,
         if is_overlap { "overlap" } else { "ignored" },
     );
-    push_min_gap(&mut text, record.keep);
+    push_min_gap(&mut text, record.min_gap);
     push_hulls(&mut text, line.hull, record.outcome, false);
     text
 }
@@ -289,7 +290,11 @@ fn push_times(text: &mut String, TimeRecord { lower, upper }: TimeRecord) {
         let value = lower + 0.5 * (upper - lower);
         // The middle of distant bounds is not an estimate.
         if upper - lower < 1e-3 {
-            push_line(text, "time", &format!("{} of the motion", known(value, upper - lower)));
+            push_line(
+                text,
+                "time",
+                &format!("{} of the motion", rounded_to_error(value, upper - lower)),
+            );
         }
         push_line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
     } else {
@@ -299,8 +304,8 @@ fn push_times(text: &mut String, TimeRecord { lower, upper }: TimeRecord) {
 
 /// Appends the pose of a body at a time.
 fn push_pose(text: &mut String, name: &str, motion: &Motion, time: f64) {
-    let Ok(pose) = motion.at(time) else { return };
+    let Ok(pose) = motion.pose_at(time) else { return };
     let q = pose.rotation();
-    let rotation = [q.x, q.y, q.z, q.w].map(|x| known(x, 1e-14)).join(",");
+    let rotation = [q.x, q.y, q.z, q.w].map(|x| rounded_to_error(x, 1e-14)).join(",");
     push_line(text, name, &format!("{},{rotation}", known_vector(pose.translation(), 1e-14)));
 }

@@ -1,7 +1,9 @@
 //! Formats numbers and vectors for text output.
 
 use colltrans::glam::DVec3;
-pub(crate) use colltrans_mesh::words::{about, counted, decade, known, number, six_digits};
+pub(crate) use colltrans_mesh::words::{
+    count_text, decade, number, rounded_to_error, rounded_up, six_digits,
+};
 
 /// Rounding error of the components of unit vectors.
 const UNIT_ERROR: f64 = 1e-14;
@@ -18,7 +20,7 @@ pub(crate) fn vector(v: DVec3) -> String {
 
 /// Returns a vector whose components are known to within `error`.
 pub(crate) fn known_vector(v: DVec3, error: f64) -> String {
-    v.to_array().map(|c| known(c, error)).join(",")
+    v.to_array().map(|c| rounded_to_error(c, error)).join(",")
 }
 
 #[cfg(test)]

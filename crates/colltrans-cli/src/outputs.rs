@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use crate::failure::Failure;
 use crate::inputs::Identity;
 
-/// A file that is being written. It is removed unless it is finished.
+/// A file that is being written. If it is dropped before it is finished or kept, its temporary file is removed.
 pub(crate) struct Output {
     file: File,
     partial: Option<Partial>,

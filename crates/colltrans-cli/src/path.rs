@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use colltrans::motion::path::{JointPath, PathError, PathOutcome, Place};
+use colltrans::motion::path::{JointPath, PathError, PathOutcome, PathPlace};
 use colltrans::record::{Ending, PathRecord, TimeRecord};
 use colltrans::{ProofFile, ProofFileError};
 use colltrans_assembly::AssemblyError;
 use colltrans_assembly_io::ReadError;
 use colltrans_assembly_io::read::{self, ReadOptions};
-use colltrans_assembly_io::robot::{Cell, Robot, RobotError, Table, body_of};
+use colltrans_assembly_io::robot::{Cell, Robot, RobotError, Table, body_from_mesh};
 use colltrans_mesh::body::BodyOptions;
 
 use crate::args::PathArguments;
@@ -18,7 +18,7 @@ use crate::body;
 use crate::driver::{AnswerOutputs, OutputTargets, no_picture};
 use crate::failure::{Code, Failure, note};
 use crate::inputs::read_text_or_stdin;
-use crate::numbers::{counted, known, known_vector, number, unit_vector};
+use crate::numbers::{count_text, known_vector, number, rounded_to_error, unit_vector};
 use crate::outputs;
 use crate::report::{meet_verb, push_line, push_min_gap};
 
@@ -28,10 +28,10 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
         [robot, rows].into_iter().chain(scene).chain(srdf).map(PathBuf::as_path).collect();
     let targets = OutputTargets::new(arguments.json, save_proof.as_ref(), None, &inputs)?;
     let PathQuery { cell, path, limitations } = PathQuery::read(arguments)?;
-    let query_failure = |e: PathError| Failure::new(Code::Query, cell.words(&e));
-    let cast = cell.along(&path, arguments.keep).map_err(|e| match e {
+    let query_failure = |e: PathError| Failure::new(Code::Query, cell.error_message(&e));
+    let cast = cell.path_cast(&path, arguments.min_gap).map_err(|e| match e {
         PathError::Query { .. } => query_failure(e),
-        other => Failure::new(Code::Input, cell.words(&other)),
+        other => Failure::new(Code::Input, cell.error_message(&other)),
     })?;
     let outcome = match targets.save_proof {
         None => cast.first_contact().map_err(query_failure)?,
@@ -46,8 +46,8 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
             outcome
         }
     };
-    let mut record = PathRecord::of(&outcome, &cast, cell.names());
-    record.hulls = cell.hulls();
+    let mut record = PathRecord::from_outcome(&outcome, &cast, cell.names());
+    record.hulls = cell.hull_links();
     record.dents.clone_from(cell.dents());
     record.notes.clone_from(&limitations);
     targets.write_answer(AnswerOutputs {
@@ -74,7 +74,7 @@ fn undecided_failure(record: &PathRecord) -> Option<Failure> {
     };
     let message = format!(
         "the search between {a} and {b} took its maximum number of steps: no two bodies meet before {}; later contacts of \
-         these two are undecided; leave the pair out with --ignore {a},{b}, or give a minimum gap with --keep",
+         these two are undecided; leave the pair out with --ignore {a},{b}, or give a minimum gap with --min_gap",
         number(time.lower)
     );
     Some(Failure::new(Code::Query, message))
@@ -102,21 +102,22 @@ impl PathQuery {
             .with_skip_missing(arguments.skip_missing)
             .with_hulls(arguments.hull.clone())
             .with_allow_outside(arguments.allow_outside);
-        let robot = read::robot(&arguments.robot, &options).map_err(|e| robot_failure(&e))?;
+        let robot = read::read_robot(&arguments.robot, &options).map_err(|e| robot_failure(&e))?;
         robot.notes().iter().for_each(|text| note(text));
         let place = arguments.rows.display();
         let table = Table::parse(&read_text_or_stdin(&arguments.rows)?)
             .map_err(|e| input(&format!("{place}: {e}")))?;
         let (path, notes) =
-            robot.path(&table, &fixed_joints).map_err(|e| input(&format!("{place}: {e}")))?;
+            robot.joint_path(&table, &fixed_joints).map_err(|e| input(&format!("{place}: {e}")))?;
         for text in &notes {
             note(text);
         }
         let (mut scene, mut dents) = (Vec::new(), Vec::new());
         for file in &arguments.scene {
             let options = BodyOptions::default().with_scale(arguments.scene_scale);
-            let loaded =
-                colltrans_mesh::body::load(file, &options, |mesh, options| body_of(&mesh, options));
+            let loaded = colltrans_mesh::body::load(file, &options, |mesh, options| {
+                body_from_mesh(&mesh, options)
+            });
             let loaded =
                 loaded.map_err(|e| Failure::new(Code::Input, body::load_error_message(&e)))?;
             for text in &loaded.notes {
@@ -127,14 +128,14 @@ impl PathQuery {
             let name = stem(file).filter(|name| {
                 let same_name =
                     arguments.scene.iter().filter(|other| stem(other).as_ref() == Some(name));
-                same_name.count() == 1 && robot.link(name).is_err()
+                same_name.count() == 1 && robot.link_index(name).is_err()
             });
             // If the name is ambiguous, the path of the file is the name.
             let name = name.unwrap_or_else(|| file.display().to_string());
             dents.extend(loaded.dent().map(|depth| (name.clone(), depth)));
             scene.push((name, loaded.body));
         }
-        let listed = arguments.srdf.as_deref().map(read::disabled).transpose();
+        let listed = arguments.srdf.as_deref().map(read::read_disabled_pairs).transpose();
         let listed = listed.map_err(|e| input(&e))?;
         let cell =
             Cell::new(robot, scene, listed.as_deref()).map_err(|e| match &arguments.srdf {
@@ -143,11 +144,11 @@ impl PathQuery {
                 }
                 _ => input(&e),
             })?;
-        let cell = cell.with_dents(dents).ignoring(&ignored_pairs);
+        let cell = cell.with_dents(dents).without_pairs(&ignored_pairs);
         let cell = cell.map_err(|e| Failure::new(Code::Usage, format!("--ignore: {e}")))?;
         cell.notes().iter().for_each(|text| note(text));
-        let cell = cell.with_a_pair().map_err(|e| input(&e))?;
-        Ok(Self { cell, path, limitations: table.straight().into_iter().collect() })
+        let cell = cell.require_pair().map_err(|e| input(&e))?;
+        Ok(Self { cell, path, limitations: table.unused_note().into_iter().collect() })
     }
 }
 
@@ -157,7 +158,9 @@ fn robot_failure(error: &ReadError) -> Failure {
         ReadError::Assembly { source: AssemblyError::Part { part, .. }, .. } => {
             format!("; --hull {part} takes the convex hull of its meshes")
         }
-        ReadError::Missing { .. } | ReadError::Outside { .. } => read_error_hint(error).to_owned(),
+        ReadError::MissingMeshes { .. } | ReadError::OutsideFolder { .. } => {
+            read_error_hint(error).to_owned()
+        }
         _ => String::new(),
     };
     Failure::new(Code::Input, format!("{error}{hint}"))
@@ -194,7 +197,7 @@ fn fixed_joints(given: &[String]) -> Result<BTreeMap<String, f64>, Failure> {
 fn push_overlaps(text: &mut String, record: &PathRecord, robot: &Robot) {
     let pairs = &record.overlaps;
     for [a, b] in pairs {
-        let head = if record.keep.is_none() { "overlap" } else { "too near" };
+        let head = if record.min_gap.is_none() { "overlap" } else { "too near" };
         push_line(text, head, &format!("{a}, {b}"));
     }
     if pairs.is_empty() {
@@ -205,7 +208,7 @@ fn push_overlaps(text: &mut String, record: &PathRecord, robot: &Robot) {
         .map(|[a, b]| format!("--ignore {}", shell_quoted(&format!("{a},{b}"))))
         .collect();
     push_line(text, "leave out", &ignore.join(" "));
-    let are_links = |pair: &&[String; 2]| pair.iter().all(|name| robot.link(name).is_ok());
+    let are_links = |pair: &&[String; 2]| pair.iter().all(|name| robot.link_index(name).is_ok());
     for [a, b] in pairs.iter().filter(are_links) {
         let element = format!(
             "<disable_collisions link1=\"{}\" link2=\"{}\" reason=\"Default\"/>",
@@ -240,10 +243,10 @@ fn answer_text(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> Str
         Ending::Grazing => "grazing: two bodies come nearer than rounding resolves\n".into(),
         Ending::Overlapping => {
             let count = record.overlaps.len();
-            let pairs = match record.keep {
-                None => counted(count, "pair overlaps", "pairs overlap"),
+            let pairs = match record.min_gap {
+                None => count_text(count, "pair overlaps", "pairs overlap"),
                 Some(gap) => {
-                    let pairs = counted(count, "pair overlaps or is", "pairs overlap or are");
+                    let pairs = count_text(count, "pair overlaps or is", "pairs overlap or are");
                     format!("{pairs} as near as {}", number(gap))
                 }
             };
@@ -251,7 +254,7 @@ fn answer_text(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> Str
         }
         _ => format!(
             "free: no two bodies{restriction} {} on the whole path\n",
-            meet_verb(record.keep)
+            meet_verb(record.min_gap)
         ),
     };
     if let Some([a, b]) = record.pair.as_ref().filter(|_| record.overlaps.is_empty()) {
@@ -271,13 +274,17 @@ fn answer_text(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> Str
                 );
             }
         } else if let Some(upper) = upper {
-            push_line(&mut text, "time", &known(lower + 0.5 * (upper - lower), upper - lower));
+            push_line(
+                &mut text,
+                "time",
+                &rounded_to_error(lower + 0.5 * (upper - lower), upper - lower),
+            );
             push_line(&mut text, "bounds", &format!("{} to {}", number(lower), number(upper)));
         } else {
             push_line(&mut text, "no earlier", &number(lower));
         }
-        if let Some(Place { row, share }) = record.place {
-            let percent = known(100.0 * share, 0.1);
+        if let Some(PathPlace { row, share }) = record.place {
+            let percent = rounded_to_error(100.0 * share, 0.1);
             push_line(
                 &mut text,
                 "place",
@@ -291,12 +298,12 @@ fn answer_text(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> Str
     if let Some(normal) = record.normal {
         push_line(&mut text, "normal", &unit_vector(normal.into()));
     }
-    push_line(&mut text, "checked", &counted(record.pairs, "pair of bodies", "pairs of bodies"));
+    push_line(&mut text, "checked", &count_text(record.pairs, "pair of bodies", "pairs of bodies"));
     if !record.left_out.is_empty() {
         let pairs: Vec<String> = record.left_out.iter().map(|[a, b]| format!("{a}, {b}")).collect();
         push_line(&mut text, "left out", &pairs.join("; "));
     }
-    push_min_gap(&mut text, record.keep);
+    push_min_gap(&mut text, record.min_gap);
     if !record.hulls.is_empty() {
         let names = record.hulls.join(", ");
         push_line(&mut text, "hulls", &format!("{names}: a contact is that of the convex hull"));
@@ -304,8 +311,8 @@ fn answer_text(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> Str
     for note in &record.notes {
         push_line(&mut text, "only", note);
     }
-    let samples = counted(outcome.steps().looks as usize, "distance sample", "distance samples");
-    let planes = counted(record.planes, "plane", "planes");
+    let samples = count_text(outcome.steps().looks as usize, "distance sample", "distance samples");
+    let planes = count_text(record.planes, "plane", "planes");
     push_line(&mut text, "proof", &format!("{planes}, found with {samples}"));
     text
 }

@@ -76,7 +76,7 @@ impl<R> Line<R> {
 
     /// Adds the dents and the hulls of two convex bodies.
     pub(crate) fn with_parts(self, parts: [&Part; 2]) -> Self {
-        let dents = Dents::of(parts.map(|part| part.dent));
+        let dents = Dents::from_depths(parts.map(|part| part.dent));
         Self { dents, hull: Hulls::from_parts(parts), ..self }
     }
 }

@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &ReplayArguments) -> Result<(), Failure> {
 /// Returns the answer of a saved cast as text or JSON.
 fn replay_cast(case: &Case, as_json: bool) -> Result<String, Failure> {
     let cast = case.cast()?;
-    let answer = Question::Contact.ask(&cast)?;
+    let answer = Question::Contact.answer(&cast)?;
     let line = Line::from(answer.record(&cast));
     Ok(if as_json {
         record::json_line(&line)
@@ -44,7 +44,7 @@ fn replay_cast(case: &Case, as_json: bool) -> Result<String, Failure> {
 fn replay_motion(case: &MotionCase, as_json: bool) -> Result<String, Failure> {
     let cast = case.cast();
     let outcome = cast.first_contact()?;
-    let line = Line::from_record(MotionRecord::of(&outcome, &cast));
+    let line = Line::from_record(MotionRecord::from_outcome(&outcome, &cast));
     let text =
         if as_json { record::json_line(&line) } else { motion::answer_text(&line, cast.motions()) };
     if let MotionOutcome::Undecided(open) = &outcome {

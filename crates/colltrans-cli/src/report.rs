@@ -8,11 +8,13 @@ use colltrans::record::{
     Question, Record, StartOverlapRecord,
 };
 use colltrans::{
-    Bounded, Clearance, Contact, ContactRange, Grazing, OverlapAhead, Separated, Solver, Steps,
-    WhyFree,
+    Bounded, Clearance, Contact, ContactRange, FreeReason, Grazing, OverlapAhead, Separated,
+    Solver, Steps,
 };
 
-use crate::numbers::{about, decade, known, known_vector, number, six_digits, unit_vector};
+use crate::numbers::{
+    decade, known_vector, number, rounded_to_error, rounded_up, six_digits, unit_vector,
+};
 use crate::record::{Hulls, Line};
 use crate::terminal::escape_line;
 
@@ -27,7 +29,7 @@ pub(crate) fn cast_answer_text(answer: &Answer, line: &Line, direction: DVec3) -
         Answer::Contact(range) => contact_range_text(range, record, direction),
         Answer::Clearance(clearance) => clearance_text(clearance, record, direction),
     };
-    push_min_gap(&mut text, record.keep);
+    push_min_gap(&mut text, record.min_gap);
     push_hulls(&mut text, line.hull, line.record.outcome(), false);
     text
 }
@@ -71,7 +73,7 @@ fn clearance_text(answer: &Clearance, record: &ContactRecord, direction: DVec3) 
             push_line(&mut text, "translation", &translation);
             push_contact(&mut text, first, record, direction);
         }
-        Clearance::Free(WhyFree::Slides(grazing)) => {
+        Clearance::Free(FreeReason::Slides(grazing)) => {
             text.push_str("slides: free, the bodies slide along each other\n");
             push_overlap(&mut text, grazing);
             let first = &grazing.contact;
@@ -80,11 +82,11 @@ fn clearance_text(answer: &Clearance, record: &ContactRecord, direction: DVec3) 
             push_line(&mut text, "translation", &translation);
             push_contact(&mut text, first, record, direction);
         }
-        Clearance::Free(WhyFree::Behind(last)) => {
+        Clearance::Free(FreeReason::Behind(last)) => {
             text.push_str("behind: free, the bodies only meet behind\n");
             push_line(&mut text, "last contact", &exit_text(last, direction));
         }
-        Clearance::Free(WhyFree::Separated(answer)) => {
+        Clearance::Free(FreeReason::Separated(answer)) => {
             text.push_str("separated: free, the bodies never meet along this direction\n");
             push_separation(&mut text, answer);
         }
@@ -118,7 +120,9 @@ pub(crate) fn scan_line(line: &Line, direction: DVec3) -> String {
         }) => {
             let (length, error) = (direction.length(), rounding.unwrap_or_default());
             columns.extend(match *translation {
-                Some(t) => [known(t, error), known(t * length, error * length)],
+                Some(t) => {
+                    [rounded_to_error(t, error), rounded_to_error(t * length, error * length)]
+                }
                 None => ["-", "-"].map(str::to_owned),
             });
         }
@@ -168,8 +172,8 @@ fn align_columns(columns: &[String]) -> String {
 /// Returns a translation that is known to within `error`, and its length.
 fn translation_text(t: f64, error: f64, direction: DVec3) -> String {
     let length = direction.length();
-    let shown = known(t * length, error * length);
-    format!("{} times the direction, a length of {shown}", known(t, error))
+    let shown = rounded_to_error(t * length, error * length);
+    format!("{} times the direction, a length of {shown}", rounded_to_error(t, error))
 }
 
 /// Returns a translation that is safe to move by, and its length. The known digits of `t` are used if the rounded number
@@ -181,7 +185,7 @@ pub(crate) fn safe_travel(
     direction: DVec3,
 ) -> String {
     let length = direction.length();
-    let shown = [known(t, error), known(t * length, error * length)];
+    let shown = [rounded_to_error(t, error), rounded_to_error(t * length, error * length)];
     let limits = [limit, (1.0 - 4.0 * f64::EPSILON) * limit * length];
     let is_safe = |(text, limit): (&String, f64)| text.parse::<f64>().is_ok_and(|t| t <= limit);
     let all = shown.iter().zip(limits).all(is_safe);
@@ -205,7 +209,7 @@ pub(crate) fn bound_text(t: f64) -> String {
 fn push_range(text: &mut String, first: &Contact, last: &Contact, direction: DVec3) {
     // For bodies that slide, the contact under the assumption that their overlap is real.
     let remark = match (ContactRange::Contact { first: *first, last: *last }).clearance() {
-        Clearance::Free(WhyFree::Behind(_)) => " (the contact lies behind)",
+        Clearance::Free(FreeReason::Behind(_)) => " (the contact lies behind)",
         Clearance::Overlapping(_) => " (the bodies overlap now)",
         _ if first.translation.abs() <= first.certificate.rounding => " (the bodies touch)",
         _ => "",
@@ -229,8 +233,8 @@ fn push_contact(text: &mut String, first: &Contact, record: &ContactRecord, dire
             "{} to {}, gap {} (rounding alone: up to {})",
             number(proof.lower),
             number(proof.upper),
-            about(proof.gap()),
-            about(proof.rounding)
+            rounded_up(proof.gap()),
+            rounded_up(proof.rounding)
         )
     } else {
         format!("at least {}; rounding does not resolve whether they touch", number(proof.lower))
@@ -253,7 +257,7 @@ fn push_overlap(text: &mut String, grazing: &Grazing) {
 /// Appends the margin, the normal and the work of a separation.
 fn push_separation(text: &mut String, separation: &Separated) {
     let margin = separation.certificate.margin;
-    let shown = known(margin, 1e-14 * margin);
+    let shown = rounded_to_error(margin, 1e-14 * margin);
     push_line(
         text,
         "margin",
@@ -265,13 +269,13 @@ fn push_separation(text: &mut String, separation: &Separated) {
 }
 
 /// Returns the verb for bodies that touch, or come as near as the minimum gap.
-pub(crate) fn meet_verb(keep: Option<f64>) -> String {
-    keep.map_or("meet".into(), |gap| format!("come as near as {}", number(gap)))
+pub(crate) fn meet_verb(min_gap: Option<f64>) -> String {
+    min_gap.map_or("meet".into(), |gap| format!("come as near as {}", number(gap)))
 }
 
 /// Returns the statement about bodies that are free throughout a motion. With a tolerance they may overlap.
 pub(crate) fn never_statement(record: &MotionRecord) -> String {
-    let meet = meet_verb(record.keep);
+    let meet = meet_verb(record.min_gap);
     match record.tolerance {
         None => format!("the bodies never {meet}"),
         // Only proofs of convex bodies have planes: their tolerance is a depth. Solids are offset.
@@ -285,8 +289,8 @@ pub(crate) fn never_statement(record: &MotionRecord) -> String {
 }
 
 /// Appends the minimum gap, if there is one.
-pub(crate) fn push_min_gap(text: &mut String, keep: Option<f64>) {
-    if let Some(gap) = keep {
+pub(crate) fn push_min_gap(text: &mut String, min_gap: Option<f64>) {
+    if let Some(gap) = min_gap {
         let what = "at which the bodies count as meeting";
         push_line(text, "minimum gap", &format!("{}, {what}", number(gap)));
     }
@@ -399,7 +403,9 @@ pub(crate) fn push_start_overlaps(text: &mut String, overlaps: &[StartOverlapRec
         let [moving, fixed] =
             [moving, fixed].map(|name| escape_line(name.as_deref().unwrap_or_default()));
         let remedy = match least_tolerance {
-            Some(least) => format!("a tolerance of {} would separate them", rounded_up(*least)),
+            Some(least) => {
+                format!("a tolerance of {} would separate them", rounded_up_to_four_digits(*least))
+            }
             None => "no tolerance would separate them".into(),
         };
         push_line(text, name, &format!("{moving} in {fixed}: {remedy}"));
@@ -407,7 +413,7 @@ pub(crate) fn push_start_overlaps(text: &mut String, overlaps: &[StartOverlapRec
 }
 
 /// Returns a value rounded up to four significant digits.
-fn rounded_up(value: f64) -> String {
+fn rounded_up_to_four_digits(value: f64) -> String {
     let short: f64 = format!("{value:.3e}").parse().unwrap_or(value);
     let step: f64 = format!("1e{}", decade(value) - 3).parse().unwrap_or(0.0);
     let rounded = if short >= value { short } else { short + step };
@@ -422,9 +428,9 @@ mod tests {
     #[test]
     fn suggested_tolerance_is_rounded_up() {
         for value in [0.1, 0.12345, 0.999_96, 7.0, 1e-7 / 3.0, 2.0 / 3.0, 123_456.7] {
-            let shown: f64 = rounded_up(value).parse().unwrap();
+            let shown: f64 = rounded_up_to_four_digits(value).parse().unwrap();
             assert!(shown >= value && shown <= value * 1.002, "{value} as {shown}");
         }
-        assert_eq!(rounded_up(0.25), "0.25");
+        assert_eq!(rounded_up_to_four_digits(0.25), "0.25");
     }
 }

@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &SetupArguments) -> Result<(), Failure> {
 /// Returns the home folder.
 ///
 /// # Errors
-/// It is unknown.
+/// The home folder is unknown.
 fn home_folder() -> Result<PathBuf, Failure> {
     let why = "the home folder is unknown; give the folder to write to with --prefix";
     std::env::home_dir()

@@ -40,7 +40,7 @@ mod at_start {
 /// Returns standard output.
 ///
 /// # Errors
-/// It was closed when the program started.
+/// Standard output was closed when the program started.
 pub(crate) fn standard_output() -> io::Result<Stdout> {
     if IS_CLOSED.load(Ordering::Relaxed) {
         return Err(io::Error::other("it is closed"));

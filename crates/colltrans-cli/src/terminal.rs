@@ -6,16 +6,16 @@
 use std::borrow::Cow;
 use std::fmt::Display;
 
-use colltrans_mesh::plain::{self, steers, written_out};
+use colltrans_mesh::plain::{self, escape_where, is_control};
 
 /// Escapes all control characters of a name or a message of one line: `\u{1b}`, `\n`.
 pub(crate) fn escape_line(text: impl Display) -> String {
-    plain::shown(&text.to_string()).into_owned()
+    plain::escape_control(&text.to_string()).into_owned()
 }
 
 /// Escapes all control characters except for line feeds.
 pub(crate) fn escape_lines(text: &str) -> Cow<'_, str> {
-    written_out(text, |c| steers(c) && c != '\n', |c| c.escape_default().to_string())
+    escape_where(text, |c| is_control(c) && c != '\n', |c| c.escape_default().to_string())
 }
 
 /// Escapes control characters of JSON by the escapes of JSON, which do not change its values.
@@ -27,7 +27,7 @@ pub(crate) fn escape_json(text: &str) -> Cow<'_, str> {
             c.encode_utf16(&mut units).iter().map(|unit| format!("\\u{unit:04x}")).collect();
         units.concat()
     };
-    written_out(text, |c| steers(c) && c != '\n', escape)
+    escape_where(text, |c| is_control(c) && c != '\n', escape)
 }
 
 #[cfg(test)]
@@ -50,7 +50,7 @@ mod tests {
     fn escaped_json_keeps_its_values() {
         let text = serde_json::to_string(HOSTILE).unwrap();
         let safe = escape_json(&text);
-        assert!(!safe.contains(steers));
+        assert!(!safe.contains(is_control));
         assert_eq!(serde_json::from_str::<String>(&safe).unwrap(), HOSTILE);
     }
 }

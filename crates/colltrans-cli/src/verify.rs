@@ -35,13 +35,13 @@ pub(crate) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
 fn print_statement(proof: &ProofFile, proven: &Proven<'_>, as_json: bool) -> Result<(), Failure> {
     let statement = proof.to_string();
     let free = match proven {
-        Proven::Directions(free) => Some(FreeRecord::of(free, |_| [None, None])),
+        Proven::Directions(free) => Some(FreeRecord::from_directions(free, |_| [None, None])),
         _ => None,
     };
     if as_json {
         return print_json(&format!(
             "{}\n",
-            statement_json(proof, proven.time(), free.as_ref(), &statement)
+            statement_json(proof, proven.time_bounds(), free.as_ref(), &statement)
         ));
     }
     match &free {
@@ -60,7 +60,7 @@ fn statement_json(
     let mut fields = Map::new();
     let mut put = |name: &str, value: Value| fields.insert(name.into(), value);
     put("holds", json!(true));
-    if let Some(count) = proof.obstacles() {
+    if let Some(count) = proof.obstacle_count() {
         put("obstacles", json!(count));
     }
     match proof.statement() {
@@ -120,7 +120,7 @@ fn statement_json(
             put("pairs", json!(of.pairs));
         }
     }
-    let inverted = proof.inverted();
+    let inverted = proof.inverted_facets();
     (inverted != [0; 2]).then(|| put("inverted", json!(inverted)));
     if let Some([lower, upper]) = time {
         let upper = upper.is_finite().then_some(upper);

@@ -22,7 +22,7 @@
 //!   `ascent` computes where these hulls meet. `cta` is the paper's algorithm. It minimises `phi(x, y)`, the
 //!   collision translation of two planar sections, by cutting planes in floating point. The result is a guess
 //!   of the contact normal. `nearest` descends to the nearest point of `M` over its simplices. `depth` grows
-//!   a polytope of points of `M` where the origin is nearest to its boundary. `keep` solves casts with a
+//!   a polytope of points of `M` where the origin is nearest to its boundary. `min_gap` solves casts with a
 //!   minimum gap, by Newton's method over nearest points. `observe` reports steps to an observer.
 //! - `cast`: [`Cast`], its derived answers, contact details and files. [`CastBody`] is the trait of bodies
 //!   that can be cast.
@@ -43,9 +43,9 @@
 //! are reduced by the distance of these points from the hull ([`ConvexPolyhedron::hull_error`]).
 //! [`Contact::translation`] is the best estimate between the bounds.
 //!
-//! Let `S` be the size of the configuration: the largest distance of a vertex from the origin of its body
-//! frame, for each body, plus the distance `|t_Q - t_P|` of the two frames. The *noise* `32 u S`, with
-//! `u = 2^-53`, bounds the rounding error of a coordinate of a difference of two points.
+//! Let `S` be the size of the configuration: the sum of the distance `|t_Q - t_P|` of the two frames and, for each
+//! body, the largest distance of a vertex from the origin of its frame. The *noise* `32 u S`, with `u = 2^-53`,
+//! bounds the rounding error of a coordinate of a difference of two points.
 //!
 //! The bounds differ by at most [`Certificate::rounding`]. This is 15 noises, plus the bound on how far the
 //! bodies reach beyond the support points of hill climbs, divided by `n . d`. If the search cannot reach this
@@ -69,7 +69,7 @@ pub mod body;
 pub mod cast;
 /// Options of [`Solver::Cta`], the paper's collision translation algorithm.
 pub mod cta {
-    pub use crate::solve::cta::options::{Cuts, NoUntil, Options, Region, Start, Until};
+    pub use crate::solve::cta::options::{Cuts, InvalidUntil, Options, Region, Start, Until};
 }
 #[doc(hidden)]
 pub mod pair;
@@ -82,9 +82,8 @@ pub mod tracker;
 
 pub use answer::{
     Bounded, CentralCast, Certificate, CertificateError, Clearance, Contact, ContactRange, Depth,
-    DirectionalDepth, Distance, Enclosure, Grazing, Intersection, NearPoints, Outcome,
-    OverlapAhead, PlaneGap, Proof, Separated, Separation, Solver, StartedFrom, Steps, WhyFree,
-    Within,
+    DirectionalDepth, Distance, Enclosure, FreeReason, Grazing, Intersection, NearPoints, Outcome,
+    OverlapAhead, PlaneGap, Proof, Separated, Separation, Solver, StartedFrom, Steps, Within,
 };
 pub use body::error::{BuildError, TopologyError};
 pub use body::{
@@ -96,7 +95,7 @@ pub use cast::{Case, CaseError};
 pub use cast::{Cast, CastBody, WitnessPoints, cast};
 pub use colltrans_kernel::PoseError;
 pub use colltrans_kernel::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
-pub use colltrans_kernel::written::UnknownName;
+pub use colltrans_kernel::serialization::UnknownName;
 pub use glam;
 pub use pair::{Pair, PairBody, PairProof};
 pub use setting::VertexPair;

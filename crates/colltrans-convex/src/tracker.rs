@@ -15,7 +15,10 @@ use crate::answer::{
     Clearance, ContactRange, DirectionalDepth, Distance, Intersection, Outcome, StartedFrom, Steps,
 };
 use crate::body::ConvexPolyhedron;
-use crate::cast::{Cast, clearance_of, contact_range_by_casts, depth_of, intersection_by_casts};
+use crate::cast::{
+    Cast, clearance_by_casts, contact_range_by_casts, directional_depth_by_casts,
+    intersection_by_casts,
+};
 use crate::pair::{Pair, distance_from};
 use crate::setting::error::QueryError;
 use crate::solve::cta::options::Region;
@@ -33,8 +36,8 @@ use crate::solve::{TrackerUpdate, WarmStart, WarmStartPolicy};
 /// and direction may jump, and bodies may change: a poor start costs time, but never correctness.
 ///
 /// A tracker has less than 600 bytes, allocates nothing, and may be cloned to follow several motions from one
-/// state. By default it uses features, and with [`Solver::Cta`](crate::Solver::Cta) the region, as the paper
-/// does. If starts from features take more work than casts from scratch (as [`Steps`] counts it), it casts
+/// state. By default it uses features. With [`Solver::Cta`](crate::Solver::Cta) it uses the region instead, as the
+/// paper does. If starts from features take more work than casts from scratch (as [`Steps`] counts it), it casts
 /// from scratch and tries features again at intervals. With [`with_focus`](Self::with_focus) it always uses
 /// the given [`Focus`]. A body's first query that solves a planar problem builds its sections, tracked or
 /// not: see [`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections).
@@ -102,10 +105,10 @@ impl<'a> Tracker<'a> {
         Self::default()
     }
 
-    /// Returns the tracker with a given focus instead of the solver's ([`Focus::of`]).
+    /// Returns the tracker with a given focus instead of the solver's ([`Focus::for_solver`]).
     ///
     /// # Errors
-    /// Returns [`QueryError::RegionFocus`] if the half-side of a fixed region is negative or not a number.
+    /// Returns [`QueryError::LastSolution`] if the half-side of a fixed region is negative or not a number.
     pub fn with_focus(self, focus: Focus) -> Result<Self, QueryError> {
         match focus.region {
             Region::Fixed(half_side) if half_side.is_nan() || half_side < 0.0 => {
@@ -169,7 +172,7 @@ impl<'a> Tracker<'a> {
     /// Returns the errors of [`Cast::clearance`].
     pub fn clearance(&mut self, cast: &Cast<'a>) -> Result<Clearance, QueryError> {
         self.begin_cast_query(cast);
-        clearance_of(cast, |cast| self.cast_either_way(cast))
+        clearance_by_casts(cast, |cast| self.cast_either_way(cast))
     }
 
     /// Computes [`Cast::directional_depth`], starting from the last answer.
@@ -178,7 +181,7 @@ impl<'a> Tracker<'a> {
     /// Returns the errors of [`Cast::directional_depth`].
     pub fn directional_depth(&mut self, cast: &Cast<'a>) -> Result<DirectionalDepth, QueryError> {
         self.begin_cast_query(cast);
-        depth_of(cast, |cast| self.cast_either_way(cast))
+        directional_depth_by_casts(cast, |cast| self.cast_either_way(cast))
     }
 
     /// Computes [`Cast::intersects`], starting from the last answer of this method.
@@ -259,7 +262,7 @@ impl<'a> Tracker<'a> {
         index: usize,
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
-        let solver_focus = Focus::of(cast.options.solver);
+        let solver_focus = Focus::for_solver(cast.options.solver);
         let adaptive = self.focus.is_none() && solver_focus.features;
         let CastSlot { carry, policy, warm_started, in_last_query } = &mut self.slots[index];
         if let Some(steps) = carry.steps {

@@ -17,21 +17,21 @@ impl Aabb {
 
     /// Returns the smallest box that contains all points; [`Self::EMPTY`] if there are none.
     #[inline]
-    pub fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+    pub fn from_points(points: impl IntoIterator<Item = DVec3>) -> Self {
         let mut all = Self::EMPTY;
-        points.into_iter().for_each(|p| all.add(p));
+        points.into_iter().for_each(|p| all.extend_to(p));
         all
     }
 
     /// Returns the smallest box that contains the three corners of a triangle.
     #[inline]
-    pub fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
+    pub fn from_triangle([a, b, c]: [DVec3; 3]) -> Self {
         Self { low: a.min(b).min(c), high: a.max(b).max(c) }
     }
 
     /// Extends this box to contain `point`.
     #[inline]
-    pub fn add(&mut self, point: DVec3) {
+    pub fn extend_to(&mut self, point: DVec3) {
         self.low = self.low.min(point);
         self.high = self.high.max(point);
     }
@@ -39,38 +39,38 @@ impl Aabb {
     /// Returns the smallest box that contains both boxes.
     #[inline]
     #[must_use]
-    pub fn join(&self, other: &Self) -> Self {
+    pub fn union(&self, other: &Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
     /// Returns this box with all sides moved outwards by `by`, or inwards if `by` is negative.
     #[must_use]
     #[inline]
-    pub fn grown(&self, by: f64) -> Self {
+    pub fn expanded(&self, by: f64) -> Self {
         Self { low: self.low - by, high: self.high + by }
     }
 
     /// Checks whether the boxes have a point in common.
     #[inline]
-    pub fn meets(&self, other: &Self) -> bool {
+    pub fn intersects(&self, other: &Self) -> bool {
         self.low.cmple(other.high).all() && self.high.cmpge(other.low).all()
     }
 
     /// Checks whether the distance of the boxes along an axis (0, 1 or 2) is greater than `by`.
     #[inline]
-    pub fn is_apart(&self, other: &Self, axis: usize, by: f64) -> bool {
+    pub fn is_separated_along(&self, other: &Self, axis: usize, by: f64) -> bool {
         self.low[axis] - other.high[axis] > by || other.low[axis] - self.high[axis] > by
     }
 
     /// Checks whether this box contains the other box.
     #[inline]
-    pub fn holds(&self, other: &Self) -> bool {
+    pub fn contains_box(&self, other: &Self) -> bool {
         self.low.cmple(other.low).all() && self.high.cmpge(other.high).all()
     }
 
     /// Returns the lengths of the three sides.
     #[inline]
-    pub fn size(&self) -> DVec3 {
+    pub fn side_lengths(&self) -> DVec3 {
         self.high - self.low
     }
 
@@ -78,7 +78,7 @@ impl Aabb {
     #[inline]
     #[doc(hidden)]
     pub fn half_area(&self) -> f64 {
-        let s = self.size();
+        let s = self.side_lengths();
         s.x * s.y + s.y * s.z + s.z * s.x
     }
 

@@ -14,7 +14,7 @@
 use crate::error_free::{difference_error, sum_error};
 
 /// Maximum magnitude of an accepted angle, in radians.
-pub const MOST: f64 = 1e5;
+pub const MAX_ANGLE: f64 = 1e5;
 
 /// Terms of a sum for `pi / 2`, the first two with at most 33 bits.
 const QUARTER_TURN: [f64; 3] =
@@ -46,7 +46,7 @@ const COSINE_COEFFICIENTS: [f64; 8] = [
 
 /// Sine and cosine of an angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
+pub struct SineCosine {
     pub sin: f64,
     pub cos: f64,
     /// The versine `1 - cos`.
@@ -55,7 +55,7 @@ pub struct Turn {
 
 /// Computes sine, cosine and versine of the angle `high + low` in radians, of magnitude at most [`MOST`].
 #[inline]
-pub fn turn(high: f64, low: f64) -> Turn {
+pub fn sine_and_cosine(high: f64, low: f64) -> SineCosine {
     let k = (high * std::f64::consts::FRAC_2_PI).round();
     let first = high - k * QUARTER_TURN[0];
     let second = first - k * QUARTER_TURN[1];
@@ -70,10 +70,10 @@ pub fn turn(high: f64, low: f64) -> Turn {
     let near = 1.0 - half;
     let cos = near + (((1.0 - near) - half) + beyond);
     match (k as i64).rem_euclid(4) {
-        0 => Turn { sin, cos, versine: half - beyond },
-        1 => Turn { sin: cos, cos: -sin, versine: 1.0 + sin },
-        2 => Turn { sin: -sin, cos: -cos, versine: 1.0 + cos },
-        _ => Turn { sin: -cos, cos: sin, versine: 1.0 - sin },
+        0 => SineCosine { sin, cos, versine: half - beyond },
+        1 => SineCosine { sin: cos, cos: -sin, versine: 1.0 + sin },
+        2 => SineCosine { sin: -sin, cos: -cos, versine: 1.0 + cos },
+        _ => SineCosine { sin: -cos, cos: sin, versine: 1.0 - sin },
     }
 }
 
@@ -134,7 +134,7 @@ mod tests {
         }
         for high in angles {
             for low in [0.0, high * 3e-17, -high * 5e-17] {
-                let found = turn(high, low);
+                let found = sine_and_cosine(high, low);
                 let [sin, cos] = exact_sine_cosine(&(rational(high) + rational(low)));
                 let off = |x: f64, exact: &RBig| size(&(rational(x) - exact.clone()));
                 assert!(off(found.sin, &sin) < rational_integer(2) * u.clone(), "sine of {high}");

@@ -12,10 +12,10 @@ pub struct Bounded {
     /// The best estimate.
     pub value: f64,
     /// Proven lower bound of the true number; minus infinity claims nothing.
-    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_minus_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialization::null_as_minus_infinity"))]
     pub lower: f64,
     /// Proven upper bound of the true number; infinity claims nothing.
-    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::serialization::null_as_infinity"))]
     pub upper: f64,
 }
 
@@ -36,7 +36,7 @@ impl Bounded {
     /// Returns the bounds raised to at least 0, for a number that is not negative.
     #[must_use]
     #[inline]
-    pub fn clamped(self) -> Self {
+    pub fn clamped_to_nonnegative(self) -> Self {
         let Self { value, lower, upper } = self;
         Self { value: value.max(0.0), lower: lower.max(0.0), upper: upper.max(0.0) }
     }
@@ -46,11 +46,11 @@ impl Bounded {
 #[doc(hidden)]
 pub trait RangeEnd {
     /// Returns the translation at the contact with its bounds, in multiples of the direction.
-    fn bounded(&self) -> Bounded;
+    fn bounded_translation(&self) -> Bounded;
 
     /// Returns the translation at which the bodies separate along the direction, where `self` is the first
     /// contact of the reversed cast.
-    fn exit(&self) -> Bounded {
-        self.bounded().negated()
+    fn exit_translation(&self) -> Bounded {
+        self.bounded_translation().negated()
     }
 }

@@ -26,9 +26,9 @@ pub fn accurate_cross(a: DVec3, b: DVec3) -> DVec3 {
     )
 }
 
-/// Computes twice the area of the triangle `a b c`, positive if counter-clockwise. The error is about
-/// `2^-100` times the product of the triangle's extents. Therefore the area of a sliver is accurate relative
-/// to itself.
+/// Computes twice the area of the triangle `a b c`, positive if counter-clockwise. The error is one rounding of
+/// the result, plus about `2^-100` times the product of the triangle's extents. Therefore the area of a sliver
+/// is accurate relative to itself, unless it is near `2^-100` of that product.
 #[inline]
 pub fn triangle_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let mut sum = Double::ZERO;

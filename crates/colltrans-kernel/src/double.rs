@@ -1,10 +1,10 @@
-//! Numbers with twice the usual precision and a bound on the lost error (double-word arithmetic).
+//! Numbers with twice the usual precision (double-word arithmetic) and a bound on their absolute error.
 
 #![expect(clippy::inline_always, reason = "inlining keeps the sums in registers")]
 
 use std::cmp::Ordering;
 
-use super::error_free::{difference_error, product_error, split, sum_error};
+use super::error_free::{difference_error, product_error, split_mantissa, sum_error};
 
 /// Minimum magnitude of a product whose rounding error does not underflow.
 pub(crate) const MIN_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
@@ -15,7 +15,7 @@ pub struct Double {
     /// The leading part, at least as large as `low` after [`Self::normalized`].
     pub high: f64,
     pub low: f64,
-    /// Bound on the absolute error; infinite if nothing is known.
+    /// Bound on the absolute error; infinite if there is no bound.
     pub error: f64,
 }
 
@@ -97,7 +97,7 @@ impl Double {
         self.high == 0.0 && self.low == 0.0 && self.error == 0.0
     }
 
-    /// Returns an equal number whose `low` is less than a rounding of `high`.
+    /// Returns an equal number whose `low` is at most half a unit in the last place of `high`.
     #[inline(always)]
     #[must_use]
     pub fn normalized(self) -> Self {
@@ -131,10 +131,10 @@ impl<const L: usize> ParallelSums<L> {
     /// Adds the products `entries[k] x` to the sums.
     #[inline(always)]
     pub(crate) fn add_products(&mut self, entries: [f64; L], x: f64) {
-        let (x_high, x_low) = split(x);
+        let (x_high, x_low) = split_mantissa(x);
         for (k, e) in entries.into_iter().enumerate() {
             let p = e * x;
-            let (e_high, e_low) = split(e);
+            let (e_high, e_low) = split_mantissa(e);
             let tail = e_low * x_low - (((p - e_high * x_high) - e_low * x_high) - e_high * x_low);
             let high = self.high[k] + p;
             let rest = sum_error(self.high[k], p, high);

@@ -15,7 +15,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::aabb::Aabb;
-use crate::split::{Boxed, Rule, halve, split};
+use crate::split::{Boxed, SplitRule, split_at_median, split_items};
 
 /// Maximum number of items that are split by count.
 const MAX_HALVED: usize = 4;
@@ -70,7 +70,7 @@ impl Boxed for Item {
 
 impl DynamicTree {
     /// Builds the tree over boxes. Items are numbered in the order of the boxes.
-    pub fn build(boxes: impl IntoIterator<Item = Aabb>) -> Self {
+    pub fn from_boxes(boxes: impl IntoIterator<Item = Aabb>) -> Self {
         let number = |(k, bounds)| Item { bounds, number: k as u32 };
         let mut items: Vec<Item> = boxes.into_iter().enumerate().map(number).collect();
         let mut tree = Self::default();
@@ -88,13 +88,13 @@ impl DynamicTree {
     /// # Panics
     /// If there is no item with this number.
     #[inline]
-    pub fn bounds(&self, item: u32) -> &Aabb {
+    pub fn item_bounds(&self, item: u32) -> &Aabb {
         &self.nodes[self.leaf_of_item[item as usize] as usize].bounds
     }
 
     /// Returns the box of all items; `None` if there are no items.
     #[inline]
-    pub fn root(&self) -> Option<&Aabb> {
+    pub fn root_bounds(&self) -> Option<&Aabb> {
         self.nodes.first().map(|root| &root.bounds)
     }
 
@@ -106,10 +106,10 @@ impl DynamicTree {
             return;
         }
         let middle = if items.len() <= MAX_HALVED {
-            let centers = Aabb::of_points(items.iter().map(Boxed::center));
-            halve(items, &centers)
+            let centers = Aabb::from_points(items.iter().map(Boxed::doubled_center));
+            split_at_median(items, &centers)
         } else {
-            split(items, Rule { least: items.len() / 4, longest: true })
+            split_items(items, SplitRule { min_items: items.len() / 4, only_longest_axis: true })
         };
         let (left, right) = items.split_at_mut(middle);
         let first = self.allocate_children(index);
@@ -149,7 +149,7 @@ impl DynamicTree {
     /// Returns the union of the boxes of two siblings.
     fn union_of_siblings(&self, first: u32) -> Aabb {
         let [a, b] = [first, first + 1].map(|child| &self.nodes[child as usize].bounds);
-        a.join(b)
+        a.union(b)
     }
 
     /// Inserts an item. Its number is the previous number of items.
@@ -182,7 +182,7 @@ impl DynamicTree {
     fn cheaper_sibling(&self, first: u32, bounds: &Aabb) -> u32 {
         let cost = |index: u32| {
             let Node { bounds: node_bounds, count, .. } = &self.nodes[index as usize];
-            let area = node_bounds.join(bounds).half_area();
+            let area = node_bounds.union(bounds).half_area();
             (area - node_bounds.half_area(), area, *count)
         };
         if cost(first + 1) < cost(first) { first + 1 } else { first }
@@ -230,12 +230,12 @@ impl DynamicTree {
     ///
     /// # Panics
     /// If there is no item with this number.
-    pub fn set(&mut self, item: u32, bounds: Aabb) {
+    pub fn set_bounds(&mut self, item: u32, bounds: Aabb) {
         let leaf = self.leaf_of_item[item as usize] as usize;
         let parent = self.nodes[leaf].parent;
         if parent == NO_NODE {
             self.nodes[leaf].bounds = bounds;
-        } else if self.nodes[parent as usize].bounds.holds(&bounds) {
+        } else if self.nodes[parent as usize].bounds.contains_box(&bounds) {
             self.nodes[leaf].bounds = bounds;
             self.refit_ancestors(parent);
         } else {
@@ -300,7 +300,7 @@ impl DynamicTree {
     ///
     /// # Errors
     /// The error of `visit`.
-    pub fn search<E>(
+    pub fn visit_by_bound<E>(
         &self,
         mut limit: f64,
         bound: impl Fn(&Aabb) -> f64,
@@ -387,11 +387,11 @@ mod tests {
     fn assert_valid_tree(tree: &DynamicTree, boxes: &[Aabb]) {
         assert_eq!(tree.leaf_of_item.len(), boxes.len());
         for (item, bounds) in boxes.iter().enumerate() {
-            assert_eq!(tree.bounds(item as u32), bounds);
+            assert_eq!(tree.item_bounds(item as u32), bounds);
             assert_eq!(tree.nodes[tree.leaf_of_item[item] as usize].first, item as u32);
         }
         let mut inner = 0;
-        let mut stack: Vec<u32> = tree.root().map(|_| 0).into_iter().collect();
+        let mut stack: Vec<u32> = tree.root_bounds().map(|_| 0).into_iter().collect();
         while let Some(index) = stack.pop() {
             let node = tree.nodes[index as usize];
             if node.is_leaf() {
@@ -422,7 +422,7 @@ mod tests {
             all.push(item);
             Ok::<_, Infallible>(limit)
         };
-        tree.search(limit, |bounds| bounds.low.x.max(0.0), visit).expect("no errors");
+        tree.visit_by_bound(limit, |bounds| bounds.low.x.max(0.0), visit).expect("no errors");
         all.sort_unstable();
         all
     }
@@ -435,7 +435,7 @@ mod tests {
         ) {
             let cube_of = |[x, y, z]: [i32; 3]| unit_cube(f64::from(x), f64::from(y), f64::from(z));
             let mut boxes: Vec<Aabb> = start.into_iter().map(cube_of).collect();
-            let mut tree = DynamicTree::build(boxes.iter().copied());
+            let mut tree = DynamicTree::from_boxes(boxes.iter().copied());
             for (kind, which, low) in changes {
                 let bounds = cube_of(low);
                 if kind == 0 || boxes.is_empty() {
@@ -448,7 +448,7 @@ mod tests {
                 } else {
                     let which = which.index(boxes.len());
                     boxes[which] = bounds;
-                    tree.set(which as u32, bounds);
+                    tree.set_bounds(which as u32, bounds);
                 }
                 assert_valid_tree(&tree, &boxes);
             }

@@ -22,13 +22,13 @@ pub fn difference_error(a: f64, b: f64) -> f64 {
 /// Returns the exact rounding error `a b - p` of the product `p = fl(a b)` (Dekker).
 #[inline]
 pub fn product_error(a: f64, b: f64, p: f64) -> f64 {
-    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    let ((a_high, a_low), (b_high, b_low)) = (split_mantissa(a), split_mantissa(b));
     a_low * b_low - (((p - a_high * b_high) - a_low * b_high) - a_high * b_low)
 }
 
 /// Splits `a` into a sum of two numbers with at most 26 significant bits (Veltkamp).
 #[inline]
-pub fn split(a: f64) -> (f64, f64) {
+pub fn split_mantissa(a: f64) -> (f64, f64) {
     const SPLITTER: f64 = ((1_u64 << 27) + 1) as f64;
     let c = SPLITTER * a;
     let high = c - (c - a);

@@ -10,14 +10,14 @@
 
 use std::cmp::Ordering;
 
-use crate::work;
+use crate::visit_counter;
 
 /// Number of limbs for coordinates of usual size.
-pub const SMALL: usize = 15;
+pub const SMALL_LIMBS: usize = 15;
 /// Number of limbs that suffices for every determinant.
-pub const LARGE: usize = 48;
+pub const LARGE_LIMBS: usize = 48;
 /// Number of limbs that suffices for the product of two determinants.
-pub const PRODUCT_LIMBS: usize = 2 * LARGE;
+pub const PRODUCT_LIMBS: usize = 2 * LARGE_LIMBS;
 
 /// An integer with a sign, times a power of `2^64`.
 #[derive(Clone, Copy)]
@@ -39,7 +39,7 @@ impl<const N: usize> Integer<N> {
 
     /// Returns `a b` exactly.
     #[inline]
-    pub fn product(a: f64, b: f64) -> Self {
+    pub fn exact_product(a: f64, b: f64) -> Self {
         if a == 0.0 || b == 0.0 {
             return Self::ZERO;
         }
@@ -60,8 +60,8 @@ impl<const N: usize> Integer<N> {
 
     /// Returns `a` exactly.
     #[inline]
-    pub fn number(a: f64) -> Self {
-        Self::product(a, 1.0)
+    pub fn exact_number(a: f64) -> Self {
+        Self::exact_product(a, 1.0)
     }
 
     /// Removes zero limbs at both ends.
@@ -244,7 +244,8 @@ impl<const N: usize> Integer<N> {
         (if self.negative { -magnitude } else { magnitude }, 64 * (i32::from(top) - 1))
     }
 
-    /// Returns `self / other` with a relative error of a few roundings; `None` if one of them did not fit.
+    /// Returns `self / other` with a relative error of a few roundings; `None` if one of them did not fit. The
+    /// result is not finite if `other` is 0.
     #[inline]
     pub fn ratio(&self, other: &Self) -> Option<f64> {
         if self.overflown || other.overflown {
@@ -273,7 +274,7 @@ pub fn determinant<const N: usize>(
     b: &[Integer<N>; 3],
     c: &[Integer<N>; 3],
 ) -> Integer<N> {
-    work::count(1);
+    visit_counter::count_visits(1);
     let mut sum = Integer::ZERO;
     for (k, component) in a.iter().enumerate() {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -316,9 +317,9 @@ mod tests {
         ) {
             let expected = rational(a) * rational(b) + rational(c) * rational(d);
             let sign = Some(expected.cmp(&RBig::ZERO));
-            let large = Integer::<LARGE>::product(a, b).add(&Integer::product(c, d));
+            let large = Integer::<LARGE_LIMBS>::exact_product(a, b).add(&Integer::exact_product(c, d));
             prop_assert_eq!(large.sign(), sign);
-            let small = Integer::<SMALL>::product(a, b).add(&Integer::product(c, d)).sign();
+            let small = Integer::<SMALL_LIMBS>::exact_product(a, b).add(&Integer::exact_product(c, d)).sign();
             prop_assert!(small.is_none() || small == sign);
         }
 
@@ -326,8 +327,8 @@ mod tests {
         fn determinants_and_ratios_agree_with_rationals(
             numbers in prop::array::uniform9(any_number()), w in any_number(), z in any_number(),
         ) {
-            let coordinate = |k: usize| Integer::<LARGE>::product(numbers[k], w).add(&Integer::number(z));
-            let small = |k: usize| Integer::<SMALL>::product(numbers[k], w).add(&Integer::number(z));
+            let coordinate = |k: usize| Integer::<LARGE_LIMBS>::exact_product(numbers[k], w).add(&Integer::exact_number(z));
+            let small = |k: usize| Integer::<SMALL_LIMBS>::exact_product(numbers[k], w).add(&Integer::exact_number(z));
             let exact = |k: usize| rational(numbers[k]) * rational(w) + rational(z);
             let row = |r: usize| [coordinate(r), coordinate(r + 1), coordinate(r + 2)];
             let det = determinant(&row(0), &row(3), &row(6));

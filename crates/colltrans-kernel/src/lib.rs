@@ -17,6 +17,8 @@ pub mod aabb;
 pub mod angle;
 pub mod bounded;
 #[doc(hidden)]
+pub mod derived;
+#[doc(hidden)]
 pub mod descent;
 #[doc(hidden)]
 pub mod determinant;
@@ -27,14 +29,12 @@ pub mod error;
 #[doc(hidden)]
 pub mod error_free;
 #[doc(hidden)]
-pub mod extent;
+pub mod extended;
 #[doc(hidden)]
-pub mod fine;
+pub mod height_bounds;
 pub mod id;
 #[doc(hidden)]
 pub mod integer;
-#[doc(hidden)]
-pub mod kept;
 pub mod motion;
 #[doc(hidden)]
 pub mod noise;
@@ -51,6 +51,7 @@ pub mod predicates;
 pub mod range;
 #[doc(hidden)]
 pub mod real;
+pub mod serialization;
 #[doc(hidden)]
 pub mod split;
 #[doc(hidden)]
@@ -58,10 +59,9 @@ pub mod symmetric;
 #[doc(hidden)]
 pub mod topology;
 #[doc(hidden)]
-pub mod volume;
+pub mod visit_counter;
 #[doc(hidden)]
-pub mod work;
-pub mod written;
+pub mod volume;
 
 pub use aabb::Aabb;
 pub use error::{MotionError, PoseError};

@@ -8,12 +8,12 @@
 //! - The body frame has the rotation `E(t) R` and the translation `T + v (t - s) + (E(t) - 1) a`.
 //!
 //! The numbers `s, R, T, a, k, w, v` define a motion in exact arithmetic, as if the length of `k` were 1.
-//! `Piece::error` bounds the rounding error of computed points. The start of a piece equals the end of the
-//! previous one up to rounding.
+//! `Piece::error_bound` bounds the rounding error of computed points. In a motion of [`Motion::through_poses`], a piece starts
+//! where the previous one ends, up to rounding and the defects of the matrices. Deserialising does not check this.
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::angle::{self, Turn, turn};
+use crate::angle::{self, SineCosine, sine_and_cosine};
 use crate::error::MotionError;
 use crate::error_free::{difference_error, product_error};
 use crate::noise;
@@ -31,7 +31,7 @@ const NO_ROTATION: f64 = 1e-15;
 /// use colltrans::Pose;
 ///
 /// // A door swings by a quarter turn about the z axis.
-/// let door = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2)?;
+/// let door = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2)?;
 /// let end = door.at(1.0)?;
 /// assert!(end.transform_point(DVec3::X).distance(DVec3::Y) < 1e-15);
 /// # Ok::<(), colltrans::motion::MotionError>(())
@@ -51,9 +51,9 @@ pub struct Motion {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// Time at which the piece starts.
-    pub since: f64,
+    pub start_time: f64,
     /// Pose at the start.
-    pub start: Pose,
+    pub start_pose: Pose,
     /// Vector from a point of the axis to the origin of the body frame at the start, in world units.
     pub arm: DVec3,
     /// Direction of the axis: a unit vector, up to rounding.
@@ -66,11 +66,11 @@ pub struct Piece {
 
 /// The placement of a body at one time of a piece, relative to the start of the piece.
 #[derive(Debug, Clone, Copy)]
-pub struct Moved {
+pub struct PiecePlacement {
     /// Rotation of the body frame.
     pub rotation: DMat3,
     /// Displacement of the origin of the body frame since the start of the piece, in world units.
-    pub by: DVec3,
+    pub displacement: DVec3,
     /// The rotated arm: the vector from a point of the axis to the origin of the body frame.
     pub arm: DVec3,
 }
@@ -78,7 +78,7 @@ pub struct Moved {
 impl Motion {
     /// Returns the motion of a body that rests at a pose.
     #[inline]
-    pub fn still(pose: Pose) -> Self {
+    pub fn at_rest(pose: Pose) -> Self {
         Self { pieces: vec![Piece::at_rest(pose)] }
     }
 
@@ -87,7 +87,7 @@ impl Motion {
     /// # Errors
     /// [`MotionError::Number`] if the vector is not finite or out of range.
     #[inline]
-    pub fn slide(pose: Pose, displacement: DVec3) -> Result<Self, MotionError> {
+    pub fn translation(pose: Pose, displacement: DVec3) -> Result<Self, MotionError> {
         Self::from_piece(Piece { velocity: displacement, ..Piece::at_rest(pose) })
     }
 
@@ -102,7 +102,7 @@ impl Motion {
     /// [`MotionError::Number`] if the axis is zero, or a vector is not finite or out of range.
     /// [`MotionError::Angle`] if the angle is not a number or exceeds 1e5 by magnitude.
     #[inline]
-    pub fn about(
+    pub fn from_arm_and_axis(
         pose: Pose,
         arm: DVec3,
         axis: DVec3,
@@ -120,19 +120,24 @@ impl Motion {
         })
     }
 
-    /// Returns a rotation about an axis through a point of the world. The angle is in radians,
-    /// counter-clockwise for a viewer whom the axis points at.
+    /// Returns a rotation about an axis through a point of the world. The angle is in radians. A positive angle
+    /// is counter-clockwise for a viewer towards whom the axis points.
     ///
     /// # Errors
     /// [`MotionError::Number`] if the axis is zero, or a vector is not finite or out of range.
     /// [`MotionError::Angle`] if the angle is not a number or exceeds 1e5 by magnitude.
     #[inline]
-    pub fn turn(pose: Pose, point: DVec3, axis: DVec3, angle: f64) -> Result<Self, MotionError> {
+    pub fn rotation_about(
+        pose: Pose,
+        point: DVec3,
+        axis: DVec3,
+        angle: f64,
+    ) -> Result<Self, MotionError> {
         Self::screw(pose, point, axis, angle, 0.0)
     }
 
-    /// Returns a rotation about an axis through a point of the world, which moves along its own direction by
-    /// `rise`, in world units.
+    /// Returns a screw motion from time 0 to 1: a rotation by `angle` (radians) about an axis through a point of
+    /// the world, and a translation along the axis by `rise` (world units).
     ///
     /// # Errors
     /// [`MotionError::Number`] if the axis is zero, or a vector is not finite or out of range.
@@ -162,18 +167,18 @@ impl Motion {
     /// `angular_velocity`, in radians per unit of time.
     ///
     /// # Errors
-    /// [`MotionError::Number`] if a vector is not finite or out of range. [`MotionError::Angle`] if the
-    /// angular velocity exceeds 1e5. An angular velocity of zero is accepted: the motion is then a
-    /// translation.
+    /// [`MotionError::Number`] if a vector is not finite or out of range, or if the angular velocity is not zero
+    /// but all its components are below the exact range. [`MotionError::Angle`] if the angular velocity exceeds
+    /// 1e5. An angular velocity of zero is accepted: the motion is then a translation.
     #[inline]
-    pub fn thrown(
+    pub fn free_flight(
         pose: Pose,
         center: DVec3,
         velocity: DVec3,
         angular_velocity: DVec3,
     ) -> Result<Self, MotionError> {
         if angular_velocity == DVec3::ZERO {
-            return Self::slide(pose, velocity);
+            return Self::translation(pose, velocity);
         }
         check_vector("center", center)?;
         let axis = unit_vector("angular velocity", angular_velocity)?;
@@ -188,28 +193,28 @@ impl Motion {
     /// # Errors
     /// [`MotionError::Number`] if the arm of the axis or the displacement along the axis is out of range.
     #[inline]
-    pub fn between(from: Pose, to: Pose) -> Result<Self, MotionError> {
-        Self::through(&[from, to])
+    pub fn between_poses(from: Pose, to: Pose) -> Result<Self, MotionError> {
+        Self::through_poses(&[from, to])
     }
 
-    /// Returns the screw motions from each pose to the next one, each in the same time.
+    /// Returns the screw motions from each pose to the next one. All of them have the same duration.
     ///
     /// # Errors
     /// [`MotionError::NoPoses`] if there are no poses. [`MotionError::Number`] if an axis or a displacement
     /// is out of range. [`MotionError::Angle`] if a rotation exceeds 1e5 radians per unit of time.
     #[inline]
-    pub fn through(poses: &[Pose]) -> Result<Self, MotionError> {
+    pub fn through_poses(poses: &[Pose]) -> Result<Self, MotionError> {
         let [first, ..] = poses else { return Err(MotionError::NoPoses) };
         let count = poses.len() - 1;
         if count == 0 {
-            return Ok(Self::still(*first));
+            return Ok(Self::at_rest(*first));
         }
         let time = |k: usize| k as f64 / count as f64;
         let pieces = poses.windows(2).enumerate().map(|(k, pair)| {
             let span = time(k + 1) - time(k);
             let whole = screw_between(&pair[0], &pair[1]);
             let [rate, velocity] = [DVec3::splat(whole.rate / span), whole.velocity / span];
-            Piece { since: time(k), rate: rate.x, velocity, ..whole }.validated()
+            Piece { start_time: time(k), rate: rate.x, velocity, ..whole }.validated()
         });
         Ok(Self { pieces: pieces.collect::<Result<_, _>>()? })
     }
@@ -224,21 +229,21 @@ impl Motion {
     ///
     /// # Errors
     /// [`MotionError::Time`] if the time is not from 0 to 1. [`MotionError::Pose`] if the translation is out
-    /// of range.
+    /// of range, or the computed matrix differs from a rotation by more than 1e-6.
     #[inline]
-    pub fn at(&self, time: f64) -> Result<Pose, MotionError> {
+    pub fn pose_at(&self, time: f64) -> Result<Pose, MotionError> {
         if !(0.0..=1.0).contains(&time) {
             return Err(MotionError::Time { time });
         }
-        let piece = &self.pieces[self.pieces.partition_point(|p| p.since <= time).max(1) - 1];
-        let Moved { rotation, by, .. } = piece.at(time);
-        Ok(Pose::from_matrix(rotation, piece.start.translation() + by)?)
+        let piece = &self.pieces[self.pieces.partition_point(|p| p.start_time <= time).max(1) - 1];
+        let PiecePlacement { rotation, displacement: by, .. } = piece.placement_at(time);
+        Ok(Pose::from_matrix(rotation, piece.start_pose.translation() + by)?)
     }
 
     /// Returns the pose at time 0.
     #[inline]
-    pub fn start(&self) -> Pose {
-        self.pieces[0].start
+    pub fn start_pose(&self) -> Pose {
+        self.pieces[0].start_pose
     }
 
     /// Returns the pieces that define the motion, in the order of time; the first begins at time 0.
@@ -253,7 +258,7 @@ impl Piece {
     #[inline]
     fn at_rest(start: Pose) -> Self {
         let [arm, velocity] = [DVec3::ZERO; 2];
-        Self { since: 0.0, start, arm, axis: DVec3::Z, rate: 0.0, velocity }
+        Self { start_time: 0.0, start_pose: start, arm, axis: DVec3::Z, rate: 0.0, velocity }
     }
 
     /// Checks that arm, velocity and rate are in range.
@@ -261,7 +266,7 @@ impl Piece {
     fn validated(self) -> Result<Self, MotionError> {
         check_vector("arm", self.arm)?;
         check_vector("displacement", self.velocity)?;
-        if self.rate.is_nan() || self.rate.abs() > angle::MOST {
+        if self.rate.is_nan() || self.rate.abs() > angle::MAX_ANGLE {
             return Err(MotionError::Angle { angle: self.rate });
         }
         Ok(self)
@@ -270,37 +275,37 @@ impl Piece {
     /// Computes the placement at a time that is not before the start of the piece.
     #[inline]
     #[doc(hidden)]
-    pub fn at(&self, time: f64) -> Moved {
-        let span = time - self.since;
+    pub fn placement_at(&self, time: f64) -> PiecePlacement {
+        let span = time - self.start_time;
         let displacement = self.velocity * span;
         if self.rate == 0.0 {
-            return Moved {
-                rotation: self.start.matrix(),
-                by: flush_tiny(displacement),
+            return PiecePlacement {
+                rotation: self.start_pose.matrix(),
+                displacement: flush_tiny(displacement),
                 arm: self.arm,
             };
         }
         let angle = self.rate * span;
-        let low =
-            product_error(self.rate, span, angle) + self.rate * difference_error(time, self.since);
-        let turn = turn(angle, if low.is_finite() { low } else { 0.0 });
+        let low = product_error(self.rate, span, angle)
+            + self.rate * difference_error(time, self.start_time);
+        let turn = sine_and_cosine(angle, if low.is_finite() { low } else { 0.0 });
         let arm_displacement = self.rotation_displacement(&turn, self.arm);
-        let start = self.start.matrix();
+        let start = self.start_pose.matrix();
         let turned = |column: DVec3| flush_tiny(column + self.rotation_displacement(&turn, column));
-        Moved {
+        PiecePlacement {
             rotation: DMat3::from_cols(
                 turned(start.x_axis),
                 turned(start.y_axis),
                 turned(start.z_axis),
             ),
-            by: flush_tiny(displacement + arm_displacement),
+            displacement: flush_tiny(displacement + arm_displacement),
             arm: self.arm + arm_displacement,
         }
     }
 
     /// Returns the displacement `(E - 1) z` of a vector by the rotation `E`.
     #[inline]
-    fn rotation_displacement(&self, turn: &Turn, z: DVec3) -> DVec3 {
+    fn rotation_displacement(&self, turn: &SineCosine, z: DVec3) -> DVec3 {
         let across = self.axis.cross(z);
         across * turn.sin + self.axis.cross(across) * turn.versine
     }
@@ -317,10 +322,11 @@ impl Piece {
     /// the piece. `reach` is the largest distance of a point from the origin of the body frame.
     #[doc(hidden)]
     #[inline]
-    pub fn error(&self, reach: f64, span: f64) -> f64 {
+    pub fn error_bound(&self, reach: f64, span: f64) -> f64 {
         let turned = if self.rate == 0.0 { 0.0 } else { reach };
         let arm_displacement = self.arm.length() * (self.rate.abs() * span).min(1.0);
-        noise::POSE * (turned + arm_displacement) + noise::WAY * self.velocity.length() * span
+        noise::ROTATED_POINT * (turned + arm_displacement)
+            + noise::DISPLACEMENT * self.velocity.length() * span
     }
 }
 
@@ -349,13 +355,13 @@ fn screw_between(from: &Pose, to: &Pose) -> Piece {
 }
 
 /// Computes the angle in the first quadrant whose sine and cosine have the ratio `sine : cosine`, by Newton's
-/// method with our own sine.
+/// method with the sine and cosine of [`turn`].
 #[inline]
 fn arc_tangent(sine: f64, cosine: f64) -> f64 {
     // The initial error is below 0.05.
     let mut angle = if sine < cosine { sine / cosine.max(0.5) } else { 1.57 - cosine / sine };
     for _ in 0..8 {
-        let t = turn(angle, 0.0);
+        let t = sine_and_cosine(angle, 0.0);
         angle += (sine * t.cos - cosine * t.sin) / (sine * sine + cosine * cosine).sqrt();
     }
     angle
@@ -406,8 +412,8 @@ impl From<Motion> for Vec<PieceRecord> {
     #[inline]
     fn from(motion: Motion) -> Self {
         let record = |piece: &Piece| PieceRecord {
-            since: piece.since,
-            start: piece.start,
+            since: piece.start_time,
+            start: piece.start_pose,
             arm: piece.arm.to_array(),
             axis: piece.axis.to_array(),
             rate: piece.rate,
@@ -429,7 +435,7 @@ impl TryFrom<Vec<PieceRecord>> for Motion {
             if (axis.length() - 1.0).abs() > noise::UNIT_VECTOR {
                 return Err(MotionError::Number { what: "axis", vector: axis });
             }
-            let after = pieces.last().map_or(0.0, |last| last.since);
+            let after = pieces.last().map_or(0.0, |last| last.start_time);
             let follows =
                 if pieces.is_empty() { record.since == 0.0 } else { record.since > after };
             // A piece from the time 1 on would have no duration and change the pose at the time 1.
@@ -437,8 +443,8 @@ impl TryFrom<Vec<PieceRecord>> for Motion {
                 return Err(MotionError::Time { time: record.since });
             }
             let piece = Piece {
-                since: record.since,
-                start: record.start,
+                start_time: record.since,
+                start_pose: record.start,
                 arm: DVec3::from_array(record.arm),
                 axis,
                 rate: record.rate,
@@ -457,10 +463,10 @@ mod tests {
     #[test]
     fn axis_below_exact_range_is_rejected() {
         let short = DVec3::new(0.0, 1e-170, 0.0);
-        assert!(Motion::turn(Pose::IDENTITY, DVec3::ZERO, short, 1.0).is_err());
-        assert!(Motion::thrown(Pose::IDENTITY, DVec3::ZERO, DVec3::X, short).is_err());
+        assert!(Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, short, 1.0).is_err());
+        assert!(Motion::free_flight(Pose::IDENTITY, DVec3::ZERO, DVec3::X, short).is_err());
         let long = DVec3::new(0.0, 1e-60, 0.0);
-        assert!(Motion::turn(Pose::IDENTITY, DVec3::ZERO, long, 1.0).is_ok());
+        assert!(Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, long, 1.0).is_ok());
     }
 
     #[test]
@@ -473,8 +479,8 @@ mod tests {
             };
             let (a, b) =
                 (pose(0.37 * x), pose(0.37 * x + [1.0, 1e-3, 1e-7, 1e-12][k as usize % 4]));
-            let motion = Motion::between(a, b).unwrap();
-            let [start, end] = [0.0, 1.0].map(|t| motion.at(t).unwrap());
+            let motion = Motion::between_poses(a, b).unwrap();
+            let [start, end] = [0.0, 1.0].map(|t| motion.pose_at(t).unwrap());
             assert_eq!(start, a);
             for y in [DVec3::X, DVec3::Y, DVec3::ZERO] {
                 let off = end.transform_point(y).distance(b.transform_point(y));
@@ -491,18 +497,18 @@ mod tests {
         let own = pose.inverse().unwrap().transform_point(point);
         for t in [0.0, 0.25, 0.5, 1.0] {
             let expected = point + DVec3::new(2.0, 4.0, 4.0) * t;
-            assert!(motion.at(t).unwrap().transform_point(own).distance(expected) < 1e-14);
+            assert!(motion.pose_at(t).unwrap().transform_point(own).distance(expected) < 1e-14);
         }
     }
 
     #[test]
     fn invalid_motions_and_times_are_rejected() {
         let pose = Pose::IDENTITY;
-        assert!(Motion::turn(pose, DVec3::ZERO, DVec3::ZERO, 1.0).is_err());
-        assert!(Motion::turn(pose, DVec3::ZERO, DVec3::Z, f64::NAN).is_err());
-        assert!(Motion::turn(pose, DVec3::ZERO, DVec3::Z, 2e5).is_err());
-        assert!(Motion::slide(pose, DVec3::new(f64::INFINITY, 0.0, 0.0)).is_err());
-        assert!(Motion::through(&[]).is_err());
-        assert!(Motion::still(pose).at(1.5).is_err());
+        assert!(Motion::rotation_about(pose, DVec3::ZERO, DVec3::ZERO, 1.0).is_err());
+        assert!(Motion::rotation_about(pose, DVec3::ZERO, DVec3::Z, f64::NAN).is_err());
+        assert!(Motion::rotation_about(pose, DVec3::ZERO, DVec3::Z, 2e5).is_err());
+        assert!(Motion::translation(pose, DVec3::new(f64::INFINITY, 0.0, 0.0)).is_err());
+        assert!(Motion::through_poses(&[]).is_err());
+        assert!(Motion::at_rest(pose).pose_at(1.5).is_err());
     }
 }

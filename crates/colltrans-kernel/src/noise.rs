@@ -48,25 +48,27 @@ const UPPER_BOUND_NOISES: f64 = 4.0;
 /// Maximum distance of the witness points of a certificate, in noises.
 const RESIDUAL_NOISES: f64 = 3.0;
 
-/// Margin by which the length of a weighted mean of points of `M` is raised to an upper bound, in noises. The
-/// second entry is the part that is demanded if the points are computed nearly without rounding.
+/// Margins by which the length of a weighted mean of points of `M` is raised to an upper bound, in noises: by a
+/// search, and by a check. The margin of a check is smaller, because it computes the points nearly without rounding.
 const MEAN_NOISES: [f64; 2] = [1.5, 0.375];
 
-/// Part of a minimum gap that is not claimed if points are computed nearly without rounding, in noises.
+/// Margin by which a check raises the length of a weighted mean of points of `M` minus a translation, before it
+/// compares the length with a minimum gap, in noises.
 const GAP_NOISES: f64 = 0.5;
 
-/// Maximum size of a minimum gap that leaves no room for rounding, in noises.
+/// Maximum size of a slight minimum gap, in noises. Rounding may leave no points that are provably within it.
 const MAX_SLIGHT_NOISES: f64 = 8.0;
 
-/// Margin by which a height in the setting frame is lowered to a lower bound, in noises. The second entry is
-/// the part that is demanded if the points are computed nearly without rounding.
+/// Margins by which a height in the setting frame is lowered to a lower bound, in noises: by a search, and by a
+/// check. The margin of a check is smaller, because it computes the points nearly without rounding.
 const HEIGHT_NOISES: [f64; 2] = [0.75, 0.25];
 
-/// Tolerance for the length of a unit vector, and for its product with a vector that it should be orthogonal
-/// to.
+/// Tolerance for the length of a unit vector, for its product with a vector that it should be orthogonal to, and
+/// for a sum of weights that should be 1.
 pub const UNIT_VECTOR: f64 = 32.0 * UNIT_ROUNDOFF;
 
-/// Relative rounding error of a gain along an edge. A hill climb demands a larger gain.
+/// Gain along an edge that a hill climb must exceed, in multiples of the sum of the magnitudes of the terms of the
+/// gain. It is twice the rounding error of a gain.
 pub const GAIN: f64 = 8.0 * UNIT_ROUNDOFF;
 
 /// Distance from a face within which points are taken to lie on it, in multiples of the largest coordinate.
@@ -77,14 +79,14 @@ pub const COPLANAR: f64 = 64.0 * UNIT_ROUNDOFF;
 pub const WITNESS: f64 = 32.0 * UNIT_ROUNDOFF;
 
 /// Bound on the error of a rotated point, in multiples of its distance from the origin of its frame.
-pub const POSE: f64 = 96.0 * UNIT_ROUNDOFF;
+pub const ROTATED_POINT: f64 = 96.0 * UNIT_ROUNDOFF;
 
 /// Bound on the distance by which points of two moving bodies are displaced because coordinates of poses
 /// below the exact range count as 0.
-pub const FLUSHED: f64 = 8.0 * MIN_MAGNITUDE;
+pub const FLUSHED_POSE_COORDINATES: f64 = 8.0 * MIN_MAGNITUDE;
 
 /// Bound on the error of a displacement, in multiples of its length.
-pub const WAY: f64 = 8.0 * UNIT_ROUNDOFF;
+pub const DISPLACEMENT: f64 = 8.0 * UNIT_ROUNDOFF;
 
 /// Relative rounding error of sums in section coordinates.
 pub const SECTION: f64 = 128.0 * UNIT_ROUNDOFF;
@@ -96,7 +98,7 @@ pub struct Noise(f64);
 impl Noise {
     /// Returns the bounds for the size `S`, a length in world units.
     #[inline]
-    pub fn of(size: f64) -> Self {
+    pub fn for_size(size: f64) -> Self {
         // Two coincident points have size 0. The smallest nonzero magnitude replaces it.
         Self(NOISE_IN_ROUNDOFFS * UNIT_ROUNDOFF * size.max(MIN_MAGNITUDE))
     }
@@ -104,68 +106,69 @@ impl Noise {
     /// Returns the bound on the error of a coordinate of a point of `M`, and on the error of comparing two
     /// coordinates along a unit normal.
     #[inline]
-    pub fn point(self) -> f64 {
+    pub fn point_error(self) -> f64 {
         self.0
     }
 
     /// Returns the bound on the lateral error of the shadow of a point of `M`.
     #[inline]
-    pub fn lateral(self) -> f64 {
+    pub fn lateral_error(self) -> f64 {
         LATERAL_ERROR * self.0
     }
 
     /// Returns the touching distance, below which lateral distances are not distinguished.
     #[inline]
-    pub fn touching(self) -> f64 {
+    pub fn touching_distance(self) -> f64 {
         TOUCHING_NOISES * self.0
     }
 
     /// Returns the bound on the excess of both bodies beyond their support points: twice four tolerances of
     /// [`COPLANAR`] of their size.
     #[inline]
-    pub fn beyond(self) -> f64 {
+    pub fn max_excess(self) -> f64 {
         EXCESS_NOISES * self.0
     }
 
     /// Returns the depth below a plane at which a point still counts as lying on the plane. `late` is true
     /// after the search has visited many portals.
     #[inline]
-    pub fn plane(self, late: bool) -> f64 {
-        if late { self.touching() } else { self.0 }
+    pub fn plane_tolerance(self, late: bool) -> f64 {
+        if late { self.touching_distance() } else { self.0 }
     }
 
     /// Returns the longer half-side of the widening rectangle for bodies whose shadows are `margin` apart.
     #[inline]
-    pub fn widening(self, margin: f64) -> f64 {
-        margin.max(0.0) + WIDENING_TOUCHES * self.touching()
+    pub fn widening_half_side(self, margin: f64) -> f64 {
+        margin.max(0.0) + WIDENING_TOUCHES * self.touching_distance()
     }
 
     /// Returns the largest half-side of a widening rectangle. Its margin is at most one noise, because shadows that
     /// are farther apart are separated.
     #[inline]
-    pub fn widest(self) -> f64 {
-        self.widening(self.0)
+    pub fn max_widening_half_side(self) -> f64 {
+        self.widening_half_side(self.0)
     }
 
-    /// Returns the largest `upper - lower` that rounding can cause, as a length along `n`. `across` is the
-    /// length of the part of `n` perpendicular to the direction, `widening` the longer half-side of the
+    /// Returns the largest difference of the estimates of the upper and the lower bound that rounding can cause, as a
+    /// length along `n`. It does not include [`Self::raised`], [`Self::lowered`] and [`Self::beyond`]. `across` is
+    /// the length of the part of `n` perpendicular to the direction, `widening` the longer half-side of the
     /// widening rectangle.
     #[inline]
-    pub fn gap(self, across: f64, widening: f64) -> f64 {
+    pub fn max_bound_gap(self, across: f64, widening: f64) -> f64 {
         // Depth at which the plane was accepted among ties.
-        let bounds = self.plane(true) + BOUND_NOISES * self.0;
+        let bounds = self.plane_tolerance(true) + BOUND_NOISES * self.0;
         if widening == 0.0 { bounds } else { bounds + across * (2.0 * WIDENING_CORNER * widening) }
     }
 
     /// Returns the margin by which an estimate of a lower bound along `n` is lowered.
     #[inline]
-    pub fn lowered(self) -> f64 {
+    pub fn lower_bound_margin(self) -> f64 {
         self.0
     }
 
     /// Returns the margin by which an estimate of an upper bound along `n` is raised.
     #[inline]
-    pub fn raised(self) -> f64 {
+    pub fn upper_bound_margin(self) -> f64 {
         UPPER_BOUND_NOISES * self.0
     }
 
@@ -183,10 +186,10 @@ impl Noise {
         MEAN_NOISES[1] * self.0
     }
 
-    /// Checks whether a minimum gap is so small that rounding leaves no room for points that are provably as
-    /// near. The size of this configuration includes the gap.
+    /// Checks whether a minimum gap is at most eight noises. Rounding may leave no points that are provably
+    /// within such a gap. The size of this configuration includes the gap.
     #[inline]
-    pub fn is_slight(self, min_gap: f64) -> bool {
+    pub fn is_below_noise(self, min_gap: f64) -> bool {
         min_gap <= MAX_SLIGHT_NOISES * self.0
     }
 
@@ -219,7 +222,7 @@ impl Noise {
 
     /// Returns the maximum distance of the witness points of a certificate that claims an upper bound.
     #[inline]
-    pub fn residual(self) -> f64 {
+    pub fn residual_tolerance(self) -> f64 {
         RESIDUAL_NOISES * self.0
     }
 
@@ -227,6 +230,6 @@ impl Noise {
     /// laterally.
     #[inline]
     pub fn widened_residual_tolerance(self) -> f64 {
-        WIDENING_CORNER * self.widest() + BOUND_NOISES * self.0
+        WIDENING_CORNER * self.max_widening_half_side() + BOUND_NOISES * self.0
     }
 }

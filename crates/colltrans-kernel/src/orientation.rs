@@ -1,8 +1,8 @@
 //! Exact orientation predicate: the side of a segment of the shadow plane on which the line passes.
 //!
-//! Let `m` be the axis along which `d` is largest, and `u`, `v` the next two in cyclic order. The *exact
-//! shadow* of `x` is `(x_u d_m - x_m d_u, x_v d_m - x_m d_v)`. `det[a, b, d] d_m` is the determinant of the
-//! shadows of `a` and `b`.
+//! Let `m` be the axis along which `d` is largest by magnitude, and `u`, `v` the next two in cyclic order. The
+//! *exact shadow* of `x` is `(x_u d_m - x_m d_u, x_v d_m - x_m d_v)`. `det[a, b, d] d_m` is the determinant of
+//! the exact shadows of `a` and `b`.
 //!
 //! Ties are frequent in designed parts. Therefore three methods are tried, each exact if it returns a sign:
 //!
@@ -18,12 +18,12 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::double::{Double, ParallelSums};
 use super::error_free::{difference_error, sum_error};
-use super::integer::{Integer, LARGE, SMALL};
-use super::real::{Twice, Vector};
+use super::integer::{Integer, LARGE_LIMBS, SMALL_LIMBS};
+use super::real::{DoubleWord, RealVector};
 
 /// A point of `M` as the sum of products that defines it: `R_Q q - R_P p + high + low`.
 #[derive(Debug, Clone, Copy)]
-pub struct Terms<'a> {
+pub struct PointTerms<'a> {
     /// Rotation `R_Q` of the fixed body, and its vertex `q`.
     pub fixed: (&'a DMat3, DVec3),
     /// Rotation `R_P` of the moving body, and its vertex `p`.
@@ -32,7 +32,7 @@ pub struct Terms<'a> {
     pub offset: [DVec3; 2],
 }
 
-impl Terms<'_> {
+impl PointTerms<'_> {
     /// Returns the factors of the products whose sum is a coordinate.
     #[inline]
     fn coordinate_factors(&self, row: usize) -> [(f64, f64); 8] {
@@ -51,22 +51,22 @@ impl Terms<'_> {
 
     /// Returns the point, computed nearly without rounding and then rounded.
     #[inline]
-    pub fn point(&self) -> DVec3 {
+    pub fn rounded_point(&self) -> DVec3 {
         DVec3::from_array(self.double_coordinates([0, 1, 2]).map(|coordinate| coordinate.high))
     }
 
     /// Returns the point in twice the usual precision.
     #[inline]
-    pub fn twice(&self) -> Vector<Twice> {
-        Vector(
+    pub fn double_word_point(&self) -> RealVector<DoubleWord> {
+        RealVector(
             self.double_coordinates([0, 1, 2])
-                .map(|coordinate| Twice::new(coordinate.high, coordinate.low)),
+                .map(|coordinate| DoubleWord::new(coordinate.high, coordinate.low)),
         )
     }
 
     /// Returns the exact coordinates of the point.
     #[inline]
-    pub fn coordinates<const N: usize>(&self) -> [Integer<N>; 3] {
+    pub fn exact_coordinates<const N: usize>(&self) -> [Integer<N>; 3] {
         std::array::from_fn(|row| self.exact_coordinate(row))
     }
 
@@ -75,37 +75,42 @@ impl Terms<'_> {
     fn exact_coordinate<const N: usize>(&self, row: usize) -> Integer<N> {
         self.coordinate_factors(row)
             .iter()
-            .fold(Integer::ZERO, |sum, &(a, b)| sum.add(&Integer::product(a, b)))
+            .fold(Integer::ZERO, |sum, &(a, b)| sum.add(&Integer::exact_product(a, b)))
     }
 
     /// Returns the exact shadow for the axes `[m, u, v]`.
     #[inline]
     fn exact_shadow<const N: usize>(&self, d: DVec3, [m, u, v]: [usize; 3]) -> [Integer<N>; 2] {
-        let times = |x: &Integer<N>, k: usize| x.multiply(&Integer::number(d[k]));
+        let times = |x: &Integer<N>, k: usize| x.multiply(&Integer::exact_number(d[k]));
         let along_m = self.exact_coordinate(m);
         [u, v].map(|k| times(&self.exact_coordinate(k), m).subtract(&times(&along_m, k)))
     }
 }
 
-/// Returns the sign of `det[a - o, b - o, d]` with `o = (eps, eps^2)` on the two world axes along which `d`
-/// is smaller (simulation of simplicity). The sign is `Equal` only if `a` and `b` have the same shadow along
-/// `d`.
+/// Returns the sign of `det[a - o, b - o, d]` for an infinitesimal offset `o`, which is `eps` along the world
+/// axis `u` and `eps^2` along `v` (simulation of simplicity). The sign is `Equal` only if `a` and `b` have the
+/// same shadow along `d`.
 ///
 /// `base` computes the [`shadow`] of `a` or `b`.
 #[inline]
-pub fn orientation(a: &Terms, b: &Terms, d: DVec3, base: impl FnOnce() -> Shadow) -> Ordering {
+pub fn perturbed_orientation(
+    a: &PointTerms,
+    b: &PointTerms,
+    d: DVec3,
+    base: impl FnOnce() -> Shadow,
+) -> Ordering {
     let axes = ordered_axes(d);
     sign_by_doubles(a, b, d, axes, base)
-        .or_else(|| sign_by_integers::<SMALL>(a, b, d, axes))
-        .or_else(|| sign_by_integers::<LARGE>(a, b, d, axes))
+        .or_else(|| sign_by_integers::<SMALL_LIMBS>(a, b, d, axes))
+        .or_else(|| sign_by_integers::<LARGE_LIMBS>(a, b, d, axes))
         .unwrap_or(Ordering::Equal)
 }
 
 /// Computes the sign with integers of `N` limbs; `None` if a number did not fit.
 #[inline(never)]
 fn sign_by_integers<const N: usize>(
-    a: &Terms,
-    b: &Terms,
+    a: &PointTerms,
+    b: &PointTerms,
     d: DVec3,
     axes: [usize; 3],
 ) -> Option<Ordering> {
@@ -128,7 +133,7 @@ fn components<const L: usize>(column: DVec3, axes: [usize; L]) -> [f64; L] {
     axes.map(|k| column[k])
 }
 
-impl Terms<'_> {
+impl PointTerms<'_> {
     /// Computes the coordinates along some axes in twice the usual precision.
     #[inline(always)]
     fn double_coordinates<const L: usize>(&self, axes: [usize; L]) -> [Double; L] {
@@ -190,9 +195,10 @@ fn ordered_axes(d: DVec3) -> [usize; 3] {
     [main, (main + 1) % 3, (main + 2) % 3]
 }
 
-/// Computes the shadow of a point. It lacks the factor `d_m`, of either sign, if `d` has no other component.
+/// Computes the exact shadow of a point in twice the usual precision. If `d` is parallel to the axis `m`, the
+/// result is the exact shadow divided by `d_m`, which may be negative.
 #[inline]
-pub fn shadow(x: &Terms, d: DVec3) -> Shadow {
+pub fn shadow_of_point(x: &PointTerms, d: DVec3) -> Shadow {
     let [m, u, v] = ordered_axes(d);
     if d[u] == 0.0 && d[v] == 0.0 {
         return x.double_coordinates([u, v]);
@@ -200,11 +206,11 @@ pub fn shadow(x: &Terms, d: DVec3) -> Shadow {
     double_shadow(x.double_coordinates([u, v, m]), [d[u], d[v], d[m]])
 }
 
-/// Converts a shadow to the lateral axes `e1, e2` in the first two columns of `axes`. The error is small
-/// relative to the length of the result, which is zero only if the shadow is. `None` if the shadow has a
-/// larger error.
+/// Converts a shadow to coordinates along the lateral axes, which are the first two columns of `axes`. The
+/// result is zero only if the shadow is zero. `None` if the errors of the shadow together exceed
+/// [`MAX_RELATIVE_ERROR`] times its larger component.
 #[inline]
-pub fn rounded(shadow: &Shadow, axes: &DMat3, d: DVec3) -> Option<DVec2> {
+pub fn lateral_coordinates(shadow: &Shadow, axes: &DMat3, d: DVec3) -> Option<DVec2> {
     let [u_error, v_error] = [shadow[0].error, shadow[1].error];
     let [along_u, along_v] = [&shadow[0], &shadow[1]].map(|x| x.high + x.low);
     let size = along_u.abs().max(along_v.abs());
@@ -227,7 +233,7 @@ const MAX_RELATIVE_ERROR: f64 = 1e-9;
 /// shadow frame, with errors of two noises in its coordinates. This suffices if the end is near the line and
 /// the displacement is long.
 #[inline]
-pub fn side(
+pub fn is_left_of_segment(
     base: &Shadow,
     displacement: DVec2,
     axes: &DMat3,
@@ -256,8 +262,8 @@ pub fn side(
 /// Computes the sign with numbers of twice the usual precision; `None` if that leaves it uncertain.
 #[inline]
 fn sign_by_doubles(
-    a: &Terms,
-    b: &Terms,
+    a: &PointTerms,
+    b: &PointTerms,
     d: DVec3,
     [m, u, v]: [usize; 3],
     base: impl FnOnce() -> Shadow,
@@ -273,8 +279,9 @@ fn sign_by_doubles(
     sign_from_shadows(displacement, base, [Ordering::Greater, sign])
 }
 
-/// Returns the sign from the shadow of the displacement and the shadow of one of its ends. `signs` are the
-/// signs of the factors of the shadows and of the determinant. `None` if the errors leave it uncertain.
+/// Returns the sign from the shadow of the displacement and the shadow of one of its ends. `signs[0]` is the
+/// sign of `d_m` if the shadows lack this factor, and `signs[1]` is the sign of `d_m` if they contain it. The
+/// other entry is `Greater`. `None` if the errors leave the sign uncertain.
 #[inline(always)]
 fn sign_from_shadows(
     displacement: [Double; 2],
@@ -317,7 +324,7 @@ mod tests {
             t in any_vector(), d in any_vector(), s in any_number(),
         ) {
             let m = DMat3::from_diagonal(DVec3::new(s, 1.0, -s));
-            let exact = |q, p| Terms {
+            let exact = |q, p| PointTerms {
                 fixed: (&m, q),
                 moving: (&DMat3::IDENTITY, p),
                 offset: [t, DVec3::ZERO],
@@ -335,11 +342,11 @@ mod tests {
                 })
                 .fold(RBig::ZERO, |u, v| u + v);
             let sign = det.cmp(&RBig::ZERO);
-            let found = orientation(&a, &b, d, || shadow(&a, d));
+            let found = perturbed_orientation(&a, &b, d, || shadow_of_point(&a, d));
             if sign != Ordering::Equal {
                 prop_assert_eq!(found, sign);
             }
-            prop_assert_eq!(orientation(&b, &a, d, || shadow(&a, d)), found.reverse());
+            prop_assert_eq!(perturbed_orientation(&b, &a, d, || shadow_of_point(&a, d)), found.reverse());
         }
     }
 }

@@ -4,19 +4,21 @@ use glam::DVec3;
 
 use super::determinant::accurate_cross;
 
-/// Sine of the angle between two edges below which their product is computed without cancellation. Above it,
-/// the product loses at most two bits.
+/// Sine of the angle between two edges below which their plain cross product is not used. Above it,
+/// cancellation costs this product less than four bits.
 const NEARLY_PARALLEL: f64 = 0.1;
 
 /// Computes twice the area times the unit normal of the counter-clockwise triangle `a b c`.
 ///
-/// If the angle at `a` is small, or the triangle is a sliver, the product of two other edges is used.
+/// If the sine of the angle at `a` is below [`NEARLY_PARALLEL`], the cross product of the two shorter edges is
+/// used. If these are nearly parallel, the product is computed without cancellation.
 #[inline]
 pub fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
     wide_normal(corners).unwrap_or_else(|| normal_of_sliver(corners))
 }
 
-/// Computes twice the area times the unit normal; `None` if the angle at `a` is small.
+/// Computes twice the area times the unit normal; `None` if the sine of the angle at `a` is below
+/// [`NEARLY_PARALLEL`].
 #[inline]
 fn wide_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     let (u, v) = (b - a, c - a);
@@ -25,8 +27,9 @@ fn wide_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     (normal.length_squared() >= NEARLY_PARALLEL * NEARLY_PARALLEL * size).then_some(normal)
 }
 
-/// Computes the normal from the two shorter edges, which determine it best. The product of two long, nearly
-/// parallel edges would lose the normal to rounding.
+/// Computes the normal from the two shorter edges, which determine it best. In the cross product of two long,
+/// nearly parallel edges, rounding errors would dominate. If the shorter edges are nearly parallel, their product
+/// is computed without cancellation.
 #[inline]
 fn normal_of_sliver([a, b, c]: [DVec3; 3]) -> DVec3 {
     let edges = [b - a, c - b, a - c];

@@ -1,19 +1,19 @@
-//! A tree over the face planes of a hull, which finds the least depth of a point below a plane.
+//! A tree over the face planes of a hull, which finds the minimum over all planes of the depth of a point.
 //!
 //! The depth of a point `p` below a plane is `offset - normal . p`, which is linear in normal and offset.
 //! Therefore a tree over the planes bounds their depths by boxes of the normals and by the least offset of
 //! each node. In contrast to a walk from face to face, the search does not visit all neighbours of a large
 //! face.
 //!
-//! Invariant. A depth is computed from the plane as given. Only the bounds use offsets from the centre of the
-//! body, because bounds would be wide far from the origin. They are lowered by more than the rounding error
-//! of a bound and a depth.
+//! Invariant. A depth is computed from the plane as given. The bounds use offsets from the centre of the body,
+//! because bounds with offsets from the origin would be wide for a body far from it. The bounds are lowered by
+//! more than the rounding error of a bound and a depth.
 
 use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::work;
+use crate::visit_counter;
 
 /// Maximum number of planes of a leaf.
 const MAX_LEAF_PLANES: usize = 8;
@@ -80,10 +80,12 @@ impl PlaneTree {
         self.build_node(middle..range.end);
     }
 
-    /// Returns the least depth of a point of the body below a plane, or any depth not greater than `enough`.
-    /// `near` is the plane to begin with, as its position in the order of the tree (0 is always valid if there are
-    /// planes), and is set to the plane with the returned depth. The number of
-    /// visited planes and nodes is added to `looks`.
+    /// Returns the minimum over all planes of the depth of the point `p`. If a depth found earlier is not greater
+    /// than `enough`, the search stops and returns the least depth found until then.
+    ///
+    /// `near` is the plane to begin with, as its position in the order of the tree. Position 0 is valid if there
+    /// are planes. `near` is set to the plane with the returned depth. The number of visited planes and nodes is
+    /// added to `looks`.
     pub fn least_depth(&self, p: DVec3, enough: f64, near: &mut usize, looks: &mut usize) -> f64 {
         let depth = |plane: usize| self.planes[plane].1 - self.planes[plane].0.dot(p);
         let ray = p - self.center;
@@ -114,7 +116,7 @@ impl PlaneTree {
             let is_second_deeper = bound(second) > bound(number + 1);
             stack.extend(if is_second_deeper { children } else { [number + 1, second] });
         }
-        work::count(visits);
+        visit_counter::count_visits(visits);
         *looks += visits;
         least
     }

@@ -5,8 +5,8 @@
 //! - The nine entries of `R` *define* where a body is. Solvers, certificates and the exact verification read
 //!   the same nine numbers, so that no rounding occurs between them.
 //! - The entries are given, or computed once from a quaternion.
-//! - They may differ from a rotation by [`TOLERANCE`]. Such a matrix stretches the body by the same share,
-//!   which the margins of [`noise`](crate::noise) cover.
+//! - The entries of `R^T R` may differ from those of the identity by [`TOLERANCE`]. Such a matrix stretches the
+//!   body by a factor of at most [`MAX_STRETCH`], which the margins of [`noise`](crate::noise) cover.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -17,8 +17,8 @@ use crate::range::{MIN_MAGNITUDE, is_in_exact_range};
 /// identity. Single precision is accepted.
 const TOLERANCE: f64 = 1e-6;
 
-/// Factor by which a pose stretches a length at most, because its entries may differ from a rotation by
-/// [`TOLERANCE`].
+/// Maximum factor by which a pose stretches a length, because the entries of `R^T R` may differ from those of the
+/// identity by [`TOLERANCE`].
 pub const MAX_STRETCH: f64 = 1.0 + 4.0 * TOLERANCE;
 
 /// Maximum difference of the length of a quaternion, or of an entry of `R^T R`, that [`Pose::from_rounded`]
@@ -42,7 +42,7 @@ const MAX_POLAR_STEPS: usize = 8;
 /// assert!(moved.distance(DVec3::new(0.0, 1.0, 2.0)) < 1e-15);
 /// assert!(pose.inverse()?.transform_point(moved).distance(DVec3::X) < 1e-15);
 ///
-/// // A quaternion that is not a rotation is refused.
+/// // A quaternion whose length is not 1 is rejected.
 /// assert!(Pose::new(DQuat::from_xyzw(0.0, 0.0, 1.0, 1.0), DVec3::ZERO).is_err());
 /// # Ok::<(), colltrans::PoseError>(())
 /// ```
@@ -65,8 +65,8 @@ impl Pose {
     /// world units.
     ///
     /// # Errors
-    /// [`PoseError::NotARotation`] if the quaternion is not a rotation. [`PoseError::Translation`] if the
-    /// translation is not finite or out of range.
+    /// [`PoseError::NotARotation`] if the length of the quaternion is not a number or differs from 1 by more than
+    /// 1e-6. [`PoseError::Translation`] if the translation is not finite or out of range.
     #[inline]
     pub fn new(rotation: DQuat, translation: DVec3) -> Result<Self, PoseError> {
         let length = rotation.length();
@@ -84,17 +84,18 @@ impl Pose {
     /// The entries are stored unchanged, except that magnitudes below `2^-200` become 0.
     ///
     /// # Errors
-    /// [`PoseError::NotARotationMatrix`] with the defect, if an entry of `R^T R` differs from that of the identity by
-    /// more than 1e-6, or the determinant is negative. [`PoseError::Translation`] if the translation is not finite or out of range.
+    /// [`PoseError::NotARotationMatrix`] with the defect, if an entry is not finite, an entry of `R^T R` differs
+    /// from that of the identity by more than 1e-6, or the determinant is negative. [`PoseError::Translation`] if
+    /// the translation is not finite or out of range.
     ///
     /// ```
     /// use colltrans::Pose;
     /// use colltrans::glam::{DMat3, DVec3};
     ///
-    /// // x to y, y to z, z to x: the same nine entries come back.
+    /// // Maps x to y, y to z, z to x. The pose stores these nine entries.
     /// let turn = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
     /// assert_eq!(Pose::from_matrix(turn, DVec3::ZERO)?.matrix(), turn);
-    /// // A reflection places nothing.
+    /// // A reflection is rejected.
     /// assert!(Pose::from_matrix(-turn, DVec3::ZERO).is_err());
     /// # Ok::<(), colltrans::PoseError>(())
     /// ```
@@ -176,7 +177,7 @@ impl Pose {
     /// Builds a pose from entries that a valid pose contained, without checks.
     #[inline]
     #[doc(hidden)]
-    pub fn checked(matrix: DMat3, translation: DVec3) -> Self {
+    pub fn from_checked_entries(matrix: DMat3, translation: DVec3) -> Self {
         Self { matrix, translation }
     }
 
@@ -185,7 +186,7 @@ impl Pose {
     /// # Errors
     /// [`PoseError::Translation`] if the translation is not finite or out of range.
     #[inline]
-    pub fn moved_to(&self, translation: DVec3) -> Result<Self, PoseError> {
+    pub fn with_translation(&self, translation: DVec3) -> Result<Self, PoseError> {
         check_translation(translation)?;
         Ok(Self { translation, ..*self })
     }
@@ -224,7 +225,7 @@ impl Pose {
     ///
     /// # Errors
     /// [`PoseError::Translation`] if the composed translation is out of range.
-    /// [`PoseError::NotARotationMatrix`] if the errors of the two matrices add up to more than 1e-6.
+    /// [`PoseError::NotARotationMatrix`] if the product of the matrices differs from a rotation by more than 1e-6.
     #[inline]
     pub fn compose(&self, first: &Self) -> Result<Self, PoseError> {
         Self::from_matrix(self.matrix * first.matrix, self.transform_point(first.translation))
@@ -247,8 +248,8 @@ impl Pose {
     /// # Errors
     /// [`PoseError::Translation`] if the new translation is not finite or out of range.
     #[inline]
-    pub fn translated(&self, offset: DVec3) -> Result<Self, PoseError> {
-        self.moved_to(self.translation + offset)
+    pub fn translated_by(&self, offset: DVec3) -> Result<Self, PoseError> {
+        self.with_translation(self.translation + offset)
     }
 }
 
@@ -336,14 +337,13 @@ fn nearest_rotation(matrix: DMat3) -> DMat3 {
     rotation
 }
 
-/// Returns the nine entries of `R^T R - 1`, which are 0 for a rotation.
+/// Returns the nine entries of `R^T R - I`, which are 0 for a rotation.
 #[inline]
 fn orthogonality_defect(matrix: DMat3) -> [f64; 9] {
     (matrix.transpose() * matrix - DMat3::IDENTITY).to_cols_array()
 }
 
-/// Bounds the relative stretch of lengths by a matrix: the square root of the sum of the squares of the
-/// entries of `R^T R - 1`.
+/// Returns the Frobenius norm of `R^T R - I`, which bounds the relative stretch of lengths by the matrix `R`.
 #[inline]
 pub fn rotation_defect(matrix: DMat3) -> f64 {
     orthogonality_defect(matrix).into_iter().map(|x| x * x).sum::<f64>().sqrt()

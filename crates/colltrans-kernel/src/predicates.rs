@@ -14,8 +14,8 @@ pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     robust::orient2d(coord(a), coord(b), coord(c))
 }
 
-/// Returns a positive number if `p` is above the plane of the counter-clockwise triangle `a b c`. The sign is
-/// exact.
+/// Returns a positive number if `p` is above the plane of the counter-clockwise triangle `a b c`, a negative
+/// number if it is below, and 0 if it lies on the plane. The sign is exact.
 #[inline]
 pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> f64 {
     let coord = |v: DVec3| Coord3D { x: v.x, y: v.y, z: v.z };
@@ -24,6 +24,6 @@ pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> f64 {
 
 /// Returns the sign of a number; `Equal` for NaN.
 #[inline]
-pub fn sign(x: f64) -> Ordering {
+pub fn sign_of(x: f64) -> Ordering {
     x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
 }

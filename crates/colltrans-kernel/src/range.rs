@@ -13,7 +13,7 @@ pub const MIN_MAGNITUDE: f64 = f64::from_bits((1023 - 200) << 52);
 
 /// Returns the vector with components below the exact range replaced by zero.
 #[inline]
-pub fn without_traces(v: DVec3) -> DVec3 {
+pub fn with_tiny_components_zeroed(v: DVec3) -> DVec3 {
     DVec3::from_array(v.to_array().map(|c| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c }))
 }
 

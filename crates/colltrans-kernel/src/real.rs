@@ -1,4 +1,4 @@
-//! Number types of a search: `f64`, or [`Twice`] its precision if rounding leaves a result uncertain.
+//! Number types of a search: `f64`, and [`DoubleWord`] for results that the rounding of `f64` leaves uncertain.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -19,22 +19,22 @@ pub trait Real:
     const ZERO: Self;
 
     /// Converts an `f64` exactly.
-    fn of(x: f64) -> Self;
+    fn from_f64(x: f64) -> Self;
 
     /// Returns the nearest `f64`.
-    fn value(self) -> f64;
+    fn to_f64(self) -> f64;
 }
 
 impl Real for f64 {
     const ZERO: Self = 0.0;
 
     #[inline]
-    fn of(x: f64) -> Self {
+    fn from_f64(x: f64) -> Self {
         x
     }
 
     #[inline]
-    fn value(self) -> f64 {
+    fn to_f64(self) -> f64 {
         self
     }
 }
@@ -42,12 +42,12 @@ impl Real for f64 {
 /// A double-word number: the sum of an `f64` and its rounding error, about 106 bits. Underflow is not
 /// detected, so numbers must not be tiny.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-pub struct Twice {
+pub struct DoubleWord {
     high: f64,
     low: f64,
 }
 
-impl Twice {
+impl DoubleWord {
     /// Returns `high + low`, where `low` is small compared with `high`.
     #[inline]
     pub fn new(high: f64, low: f64) -> Self {
@@ -56,21 +56,21 @@ impl Twice {
     }
 }
 
-impl Real for Twice {
+impl Real for DoubleWord {
     const ZERO: Self = Self { high: 0.0, low: 0.0 };
 
     #[inline]
-    fn of(x: f64) -> Self {
+    fn from_f64(x: f64) -> Self {
         Self { high: x, low: 0.0 }
     }
 
     #[inline]
-    fn value(self) -> f64 {
+    fn to_f64(self) -> f64 {
         self.high
     }
 }
 
-impl Add for Twice {
+impl Add for DoubleWord {
     type Output = Self;
 
     #[inline]
@@ -82,7 +82,7 @@ impl Add for Twice {
     }
 }
 
-impl Neg for Twice {
+impl Neg for DoubleWord {
     type Output = Self;
 
     #[inline]
@@ -91,7 +91,7 @@ impl Neg for Twice {
     }
 }
 
-impl Sub for Twice {
+impl Sub for DoubleWord {
     type Output = Self;
 
     #[inline]
@@ -100,7 +100,7 @@ impl Sub for Twice {
     }
 }
 
-impl Mul for Twice {
+impl Mul for DoubleWord {
     type Output = Self;
 
     #[inline]
@@ -111,22 +111,22 @@ impl Mul for Twice {
     }
 }
 
-impl Div for Twice {
+impl Div for DoubleWord {
     type Output = Self;
 
     #[inline]
     fn div(self, other: Self) -> Self {
         let first = self.high / other.high;
-        let rest = self - other * Self::of(first);
+        let rest = self - other * Self::from_f64(first);
         Self::new(first, rest.high / other.high)
     }
 }
 
-/// A vector of three numbers of this type.
+/// A vector of three numbers of the type `T`.
 #[derive(Debug, Clone, Copy)]
-pub struct Vector<T>(pub [T; 3]);
+pub struct RealVector<T>(pub [T; 3]);
 
-impl<T: Real> Vector<T> {
+impl<T: Real> RealVector<T> {
     pub const ZERO: Self = Self([T::ZERO; 3]);
 
     #[inline]
@@ -164,8 +164,8 @@ impl<T: Real> Vector<T> {
 
     /// Returns the nearest vector of `f64`.
     #[inline]
-    pub fn value(&self) -> DVec3 {
-        DVec3::from_array(self.0.map(T::value))
+    pub fn to_dvec3(&self) -> DVec3 {
+        DVec3::from_array(self.0.map(T::to_f64))
     }
 }
 
@@ -178,17 +178,17 @@ mod tests {
     use crate::tests::rational;
 
     /// Numbers of similar magnitude, with zeros.
-    fn any_twice() -> impl Strategy<Value = Twice> {
+    fn any_twice() -> impl Strategy<Value = DoubleWord> {
         let high = || prop_oneof![Just(0.0), (-4_i32..=4).prop_map(f64::from), -2.0..2.0_f64];
-        (high(), -1.0..1.0_f64).prop_map(|(high, low)| Twice::new(high, low * 1e-17))
+        (high(), -1.0..1.0_f64).prop_map(|(high, low)| DoubleWord::new(high, low * 1e-17))
     }
 
-    fn exact_value(x: Twice) -> RBig {
+    fn exact_value(x: DoubleWord) -> RBig {
         rational(x.high) + rational(x.low)
     }
 
     /// Checks whether two numbers differ by at most `1e-30` times a size.
-    fn agrees_within(found: Twice, truth: RBig, size: f64) -> bool {
+    fn agrees_within(found: DoubleWord, truth: RBig, size: f64) -> bool {
         (exact_value(found) - truth).to_f64().value().abs() <= 1e-30 * size
     }
 

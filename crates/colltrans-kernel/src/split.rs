@@ -9,7 +9,8 @@ use super::Aabb;
 
 /// Maximum number of bins along an axis.
 const MAX_BINS: usize = 16;
-/// Number of items above which the heuristic evaluates a sample of about this size.
+/// Number of items above which the heuristic evaluates a sample, which has between half this number and this
+/// number of items.
 const SAMPLE_SIZE: usize = 1 << 12;
 
 /// An item with a box.
@@ -21,25 +22,25 @@ pub trait Boxed {
 
     /// Returns twice the centre of the box.
     #[inline]
-    fn center(&self) -> DVec3 {
+    fn doubled_center(&self) -> DVec3 {
         self.bounds().low + self.bounds().high
     }
 }
 
 /// Constraints for a split.
 #[derive(Debug, Clone, Copy)]
-pub struct Rule {
+pub struct SplitRule {
     /// Minimum number of items of each child.
-    pub least: usize,
+    pub min_items: usize,
     /// Whether only the axis of the largest extent of the centres is evaluated, a third of the work.
-    pub longest: bool,
+    pub only_longest_axis: bool,
 }
 
 /// Partitions the items so that those of the first child come first, and returns their number.
 #[inline]
-pub fn split<T: Boxed>(items: &mut [T], rule: Rule) -> usize {
-    let least = rule.least;
-    let centers = Aabb::of_points(items.iter().map(Boxed::center));
+pub fn split_items<T: Boxed>(items: &mut [T], rule: SplitRule) -> usize {
+    let least = rule.min_items;
+    let centers = Aabb::from_points(items.iter().map(Boxed::doubled_center));
     if let Some((axis, bin)) = least_cost_split(items, &centers, rule) {
         let key = Binning::new(&centers, axis, items.len());
         let middle = move_to_front(items, |item| key.bin_of(item) <= bin);
@@ -47,17 +48,17 @@ pub fn split<T: Boxed>(items: &mut [T], rule: Rule) -> usize {
             return middle;
         }
     }
-    halve(items, &centers)
+    split_at_median(items, &centers)
 }
 
 /// Partitions the items at the median along the axis of the largest extent of the centres, and returns the
-/// number of items in front. `centers` is the box of the centres, as [`Boxed::center`] returns them.
+/// number of items in front. `centers` is the box of the centres, as [`Boxed::doubled_center`] returns them.
 #[inline]
-pub fn halve<T: Boxed>(items: &mut [T], centers: &Aabb) -> usize {
-    let axis = centers.size().max_position();
+pub fn split_at_median<T: Boxed>(items: &mut [T], centers: &Aabb) -> usize {
+    let axis = centers.side_lengths().max_position();
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| {
-        let (x, y) = (a.center()[axis], b.center()[axis]);
+        let (x, y) = (a.doubled_center()[axis], b.doubled_center()[axis]);
         x.total_cmp(&y).then(a.number().cmp(&b.number()))
     });
     middle
@@ -89,14 +90,14 @@ impl Binning {
     #[inline]
     fn new(centers: &Aabb, axis: usize, items: usize) -> Self {
         let bins = items.clamp(4, MAX_BINS);
-        let scale = bins as f64 / centers.size()[axis];
+        let scale = bins as f64 / centers.side_lengths()[axis];
         Self { axis, low: centers.low[axis], scale, last: bins - 1 }
     }
 
     #[inline]
     fn bin_of(&self, item: &impl Boxed) -> usize {
         // Values out of range, or NaN if all centres are equal, go to the first or the last bin.
-        (((item.center()[self.axis] - self.low) * self.scale) as usize).min(self.last)
+        (((item.doubled_center()[self.axis] - self.low) * self.scale) as usize).min(self.last)
     }
 }
 
@@ -112,7 +113,7 @@ impl Bin {
 
     #[inline]
     fn join(self, other: Self) -> Self {
-        Self { bounds: self.bounds.join(&other.bounds), count: self.count + other.count }
+        Self { bounds: self.bounds.union(&other.bounds), count: self.count + other.count }
     }
 
     /// Returns half the surface area of the box times the number of items.
@@ -123,15 +124,20 @@ impl Bin {
 }
 
 /// Finds the axis and the last bin of the first child with the least cost by the surface-area heuristic. For
-/// many items, evaluates a sample. `None` if no split satisfies the rule.
+/// many items, evaluates a sample. `None` if no split satisfies the rule and gives the second child a box of
+/// positive area.
 #[inline]
-fn least_cost_split<T: Boxed>(items: &[T], centers: &Aabb, rule: Rule) -> Option<(usize, usize)> {
+fn least_cost_split<T: Boxed>(
+    items: &[T],
+    centers: &Aabb,
+    rule: SplitRule,
+) -> Option<(usize, usize)> {
     let step = items.len().div_ceil(SAMPLE_SIZE);
     let counted = items.len().div_ceil(step);
-    let least = (rule.least * counted).div_ceil(items.len());
+    let least = (rule.min_items * counted).div_ceil(items.len());
     let mut best: Option<(f64, usize, usize)> = None;
     for axis in 0..3 {
-        let is_evaluated = !rule.longest || axis == centers.size().max_position();
+        let is_evaluated = !rule.only_longest_axis || axis == centers.side_lengths().max_position();
         if !is_evaluated || centers.high[axis] <= centers.low[axis] {
             continue;
         }

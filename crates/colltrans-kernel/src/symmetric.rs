@@ -16,7 +16,7 @@ pub struct Symmetric {
 impl Symmetric {
     /// Computes the Gram matrix `w^T w`.
     #[inline]
-    pub fn gram(w: &DMat3) -> Self {
+    pub fn gram_matrix(w: &DMat3) -> Self {
         let (x, y, z) = (w.x_axis, w.y_axis, w.z_axis);
         Self { xx: x.dot(x), xy: x.dot(y), xz: x.dot(z), yy: y.dot(y), yz: y.dot(z), zz: z.dot(z) }
     }
@@ -24,7 +24,7 @@ impl Symmetric {
     /// Computes `f self + g other`.
     #[inline]
     #[must_use]
-    pub fn combine(&self, f: f64, other: &Self, g: f64) -> Self {
+    pub fn linear_combination(&self, f: f64, other: &Self, g: f64) -> Self {
         Self {
             xx: f * self.xx + g * other.xx,
             xy: f * self.xy + g * other.xy,
@@ -43,7 +43,7 @@ impl Symmetric {
     }
 
     #[inline]
-    pub fn apply(&self, v: DVec3) -> DVec3 {
+    pub fn times_vector(&self, v: DVec3) -> DVec3 {
         DVec3::new(
             self.xx * v.x + self.xy * v.y + self.xz * v.z,
             self.xy * v.x + self.yy * v.y + self.yz * v.z,
@@ -53,8 +53,8 @@ impl Symmetric {
 
     /// Computes the quadratic form `v^T self v`.
     #[inline]
-    pub fn square(&self, v: DVec3) -> f64 {
-        v.dot(self.apply(v))
+    pub fn quadratic_form(&self, v: DVec3) -> f64 {
+        v.dot(self.times_vector(v))
     }
 
     /// Computes the adjugate `J`, so that `self^-1 = J / det`, and the determinant `det`.

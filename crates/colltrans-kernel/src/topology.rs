@@ -33,9 +33,9 @@ pub struct HalfEdge {
 pub struct Topology {
     /// The vertex at the start of each half-edge. These are the corners of all faces.
     origins: Vec<u32>,
-    /// First half-edge of each face, and the number of half-edges at the end.
+    /// First half-edge of each face. The last entry is the number of half-edges.
     face_start: Vec<u32>,
-    /// First entry of each vertex in `neighbours` and `outgoing`, and the number of entries at the end.
+    /// First entry of each vertex in `neighbours` and `outgoing`. The last entry is the length of `neighbours`.
     vertex_start: Vec<u32>,
     /// The neighbours of each vertex, clockwise as seen from outside.
     neighbours: Vec<u32>,
@@ -58,7 +58,7 @@ impl Topology {
     ///
     /// # Errors
     /// The errors of [`Self::from_faces`], and [`TopologyError::NotASphere`].
-    pub fn sphere(
+    pub fn from_sphere_faces(
         vertex_count: usize,
         face_start: Vec<u32>,
         face_vertices: Vec<u32>,
@@ -166,21 +166,21 @@ impl Topology {
 
     /// Returns the range of the half-edges of a face, in order.
     #[inline]
-    pub fn face(&self, face: u32) -> std::ops::Range<u32> {
+    pub fn face_half_edges(&self, face: u32) -> std::ops::Range<u32> {
         self.face_start[face as usize]..self.face_start[face as usize + 1]
     }
 
     /// Returns the vertices of a face, in order.
     #[inline]
     pub fn face_vertices(&self, face: u32) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
-        let range = self.face(face);
+        let range = self.face_half_edges(face);
         self.origins[range.start as usize..range.end as usize].iter().copied()
     }
 
     /// Returns the next half-edge of the same face.
     #[inline]
     pub fn next(&self, h: u32) -> u32 {
-        let range = self.face(self.half_edge(h).face);
+        let range = self.face_half_edges(self.half_edge(h).face);
         if h + 1 == range.end { range.start } else { h + 1 }
     }
 
@@ -199,7 +199,7 @@ impl Topology {
 
     /// Returns the half-edges that start at a vertex, in the order of [`Self::neighbours`].
     #[inline]
-    pub fn outgoing(&self, vertex: u32) -> &[u32] {
+    pub fn outgoing_half_edges(&self, vertex: u32) -> &[u32] {
         let outgoing = &self.links().outgoing;
         if outgoing.is_empty() {
             return &[];
@@ -294,7 +294,7 @@ impl Links {
                 (u.min(v), u.max(v))
             })
             .collect();
-        let (start, mut order) = bucket(vertex_count, ends.iter().map(|e| e.0));
+        let (start, mut order) = group_by_key(vertex_count, ends.iter().map(|e| e.0));
         for v in 0..vertex_count {
             let run = &mut order[start[v] as usize..start[v + 1] as usize];
             run.sort_unstable_by_key(|&h| ends[h as usize].1);
@@ -339,7 +339,7 @@ impl Links {
         face_start: &[u32],
     ) -> Result<Vec<u32>, TopologyError> {
         let origins = self.half_edges.iter().map(|h| h.origin);
-        let (start, mut outgoing) = bucket(vertex_count, origins);
+        let (start, mut outgoing) = group_by_key(vertex_count, origins);
         let after = |h: u32| self.next(face_start, self.half_edges[h as usize].twin);
         for v in 0..vertex_count {
             let (begin, end) = (start[v] as usize, start[v + 1] as usize);
@@ -371,7 +371,10 @@ impl Links {
 
 /// Groups the indices of `keys` by key (counting sort). Returns the first position of each group, and the
 /// grouped indices.
-pub fn bucket(key_count: usize, keys: impl Iterator<Item = u32> + Clone) -> (Vec<u32>, Vec<u32>) {
+pub fn group_by_key(
+    key_count: usize,
+    keys: impl Iterator<Item = u32> + Clone,
+) -> (Vec<u32>, Vec<u32>) {
     let mut start = vec![0_u32; key_count + 1];
     for key in keys.clone() {
         start[key as usize + 1] += 1;
@@ -428,7 +431,7 @@ mod tests {
             vertices.extend_from_slice(face);
             start.push(vertices.len() as u32);
         }
-        Topology::sphere(vertex_count, start, vertices)
+        Topology::from_sphere_faces(vertex_count, start, vertices)
     }
 
     const TETRAHEDRON: [&[u32]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
@@ -444,7 +447,7 @@ mod tests {
         }
         for v in 0..4 {
             assert_eq!(t.neighbours(v).len(), 3);
-            for (&w, &h) in t.neighbours(v).iter().zip(t.outgoing(v)) {
+            for (&w, &h) in t.neighbours(v).iter().zip(t.outgoing_half_edges(v)) {
                 assert_eq!((t.half_edge(h).origin, t.target(h)), (v, w));
             }
         }

@@ -7,11 +7,11 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::integer::{Integer, LARGE, SMALL, determinant};
-use super::orientation::Terms;
+use super::integer::{Integer, LARGE_LIMBS, SMALL_LIMBS, determinant};
+use super::orientation::PointTerms;
 
-/// Bound on the error of a rounded determinant: a multiple of the sum of the magnitudes of its terms, plus a
-/// multiple of the third power of the size.
+/// Factors of the error bound of a rounded determinant: the first of the sum of the magnitudes of its terms, the
+/// second of the third power of the size of the configuration.
 const DETERMINANT_ERROR: [f64; 2] = [64.0 * f64::EPSILON, f64::from_bits((1023 - 90) << 52)];
 
 /// Bound on the error of the determinant of rounded points, in the third power of the size: `3 * 9 u` for the
@@ -21,19 +21,19 @@ const ROUNDED_POINT_ERROR: f64 = 32.0 * f64::EPSILON;
 /// Returns the exact sign of `det[a, b, c]`. It is positive if the three points are counter-clockwise as seen
 /// from the side of their plane opposite to the origin. `size` is the size of the configuration.
 #[inline]
-pub fn sign(points: [&Terms; 3], size: f64) -> Ordering {
-    let [a, b, c] = points.map(Terms::point);
+pub fn origin_side(points: [&PointTerms; 3], size: f64) -> Ordering {
+    let [a, b, c] = points.map(PointTerms::rounded_point);
     let det = a.dot(b.cross(c));
     let [relative, absolute] = DETERMINANT_ERROR;
     if det.abs() > relative * term_magnitude(a, b, c) + absolute * (size * size * size) {
         return det.total_cmp(&0.0);
     }
-    sign_by_integers::<SMALL>(points)
-        .or_else(|| sign_by_integers::<LARGE>(points))
+    sign_by_integers::<SMALL_LIMBS>(points)
+        .or_else(|| sign_by_integers::<LARGE_LIMBS>(points))
         .unwrap_or(Ordering::Equal)
 }
 
-/// Returns the sign of `det[a, b, c]` for points as `TwoBodies::difference` rounds them, with an error below
+/// Returns the sign of `det[a, b, c]` for points as `TwoBodies::difference_point` rounds them, with an error below
 /// `9 u size` each. `None` if rounding leaves it uncertain.
 #[inline]
 pub fn rounded_origin_side([a, b, c]: [DVec3; 3], size: f64) -> Option<Ordering> {
@@ -51,22 +51,22 @@ fn term_magnitude(a: DVec3, b: DVec3, c: DVec3) -> f64 {
 
 /// Computes the sign of the determinant with integers of `N` limbs; `None` if a number did not fit.
 #[inline(never)]
-fn sign_by_integers<const N: usize>(points: [&Terms; 3]) -> Option<Ordering> {
-    let [a, b, c] = points.map(Terms::coordinates::<N>);
+fn sign_by_integers<const N: usize>(points: [&PointTerms; 3]) -> Option<Ordering> {
+    let [a, b, c] = points.map(PointTerms::exact_coordinates::<N>);
     determinant(&a, &b, &c).sign()
 }
 
 /// Returns the faces of a tetrahedron, each opposite to the corner of the same index.
 #[inline]
-fn tetrahedron_faces<'a>([a, b, c, d]: &'a [Terms<'a>; 4]) -> [[&'a Terms<'a>; 3]; 4] {
+fn tetrahedron_faces<'a>([a, b, c, d]: &'a [PointTerms<'a>; 4]) -> [[&'a PointTerms<'a>; 3]; 4] {
     [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
 }
 
 /// Checks exactly whether a tetrahedron contains the origin, in its interior or on its surface. `false` for a
 /// tetrahedron without volume.
 #[inline]
-pub fn encloses(corners: &[Terms; 4], size: f64) -> bool {
-    let signs = tetrahedron_faces(corners).map(|face| sign(face, size));
+pub fn contains_origin(corners: &[PointTerms; 4], size: f64) -> bool {
+    let signs = tetrahedron_faces(corners).map(|face| origin_side(face, size));
     let none = |unwanted| signs.iter().all(|sign| *sign != unwanted);
     let some = signs.iter().any(|sign| sign.is_ne());
     some && (none(Ordering::Less) || none(Ordering::Greater))
@@ -76,16 +76,17 @@ pub fn encloses(corners: &[Terms; 4], size: f64) -> bool {
 /// volumes spanned by the origin and each face, relative to the whole volume. `None` for a tetrahedron
 /// without volume.
 #[inline]
-pub fn weights_of_origin(corners: &[Terms; 4]) -> Option<[f64; 4]> {
-    weights_by_integers::<SMALL>(corners).or_else(|| weights_by_integers::<LARGE>(corners))
+pub fn weights_of_origin(corners: &[PointTerms; 4]) -> Option<[f64; 4]> {
+    weights_by_integers::<SMALL_LIMBS>(corners)
+        .or_else(|| weights_by_integers::<LARGE_LIMBS>(corners))
 }
 
 /// Computes the barycentric coordinates with integers of `N` limbs; `None` if a number did not fit or the
 /// volume is 0.
 #[inline(never)]
-fn weights_by_integers<const N: usize>(corners: &[Terms; 4]) -> Option<[f64; 4]> {
+fn weights_by_integers<const N: usize>(corners: &[PointTerms; 4]) -> Option<[f64; 4]> {
     let volumes = tetrahedron_faces(corners).map(|face| {
-        let [a, b, c] = face.map(Terms::coordinates::<N>);
+        let [a, b, c] = face.map(PointTerms::exact_coordinates::<N>);
         determinant(&a, &b, &c)
     });
     let whole = volumes.iter().fold(Integer::ZERO, |sum, volume| sum.add(volume));

@@ -47,15 +47,16 @@ pub(crate) fn parse_dae(bytes: &[u8]) -> Result<Mesh, Fault> {
     reader.index_ids(&root);
     let mut mesh = Mesh::default();
     (mesh.unit, mesh.up) = unit_and_up(&root)?;
-    let scene = root.first("scene").and_then(|scene| scene.first("instance_visual_scene"));
+    let scene =
+        root.first_child("scene").and_then(|scene| scene.first_child("instance_visual_scene"));
     let scene = if let Some(shown) = scene {
         reader.referenced(shown)?
     } else {
-        let library = root.first("library_visual_scenes");
-        let first = library.and_then(|library| library.first("visual_scene"));
+        let library = root.first_child("library_visual_scenes");
+        let first = library.and_then(|library| library.first_child("visual_scene"));
         first.ok_or_else(|| error_at(&root, "the file has no scene"))?
     };
-    for node in scene.all("node") {
+    for node in scene.children_named("node") {
         reader.add_node(node, DAffine3::IDENTITY, 0, &mut mesh)?;
     }
     mesh.groups = std::mem::take(&mut mesh.groups).unless_single();
@@ -67,10 +68,10 @@ fn error_at(element: &Element, what: impl Into<String>) -> Fault {
     Fault::new(Place::Line(element.line), what)
 }
 
-/// Returns the unit in metres and the upward axis. Both are `None` without the element `unit_and_up`.
+/// Returns the unit in metres and the upward axis. Both are `None` without the element `asset`.
 fn unit_and_up(root: &Element) -> Result<(Option<f64>, Option<DVec3>), Fault> {
-    let Some(asset) = root.first("asset") else { return Ok((None, None)) };
-    let unit = match asset.first("unit") {
+    let Some(asset) = root.first_child("asset") else { return Ok((None, None)) };
+    let unit = match asset.first_child("unit") {
         None => None,
         Some(unit) => {
             let metres =
@@ -84,7 +85,7 @@ fn unit_and_up(root: &Element) -> Result<(Option<f64>, Option<DVec3>), Fault> {
             metres
         }
     };
-    let up = match asset.first("up_axis").map(|up| (up, up.text.trim())) {
+    let up = match asset.first_child("up_axis").map(|up| (up, up.text.trim())) {
         None | Some((_, "Y_UP")) => DVec3::Y,
         Some((_, "Z_UP")) => DVec3::Z,
         Some((_, "X_UP")) => DVec3::X,
@@ -208,7 +209,7 @@ impl<'a> Reader<'a> {
     ) -> Result<(), Fault> {
         let key: *const Element = geometry;
         if !self.shapes.contains_key(&key) {
-            let shape = match geometry.first("mesh") {
+            let shape = match geometry.first_child("mesh") {
                 Some(of) => self.read_shape(of)?,
                 None if geometry.name == "geometry" => {
                     return Err(error_at(
@@ -306,7 +307,8 @@ impl<'a> Reader<'a> {
     /// Returns the source of the positions for an input of vertices.
     fn position_source(&self, vertex: &Element) -> Result<&'a Element, Fault> {
         let vertices = self.referenced(vertex)?;
-        let position = vertices.all("input").find(|i| i.get("semantic") == Some("POSITION"));
+        let position =
+            vertices.children_named("input").find(|i| i.get("semantic") == Some("POSITION"));
         self.referenced(
             position.ok_or_else(|| error_at(vertices, "the vertices have no input POSITION"))?,
         )
@@ -314,7 +316,8 @@ impl<'a> Reader<'a> {
 
     /// Returns the vectors of a source, and their printed forms.
     fn source_vectors(&self, source: &Element) -> Result<(Vec<DVec3>, Vec<[Printed; 3]>), Fault> {
-        let accessor = source.first("technique_common").and_then(|t| t.first("accessor"));
+        let accessor =
+            source.first_child("technique_common").and_then(|t| t.first_child("accessor"));
         let accessor = accessor.ok_or_else(|| error_at(source, "the source has no accessor"))?;
         let array = self.referenced(accessor)?;
         if array.name != "float_array" {
@@ -332,7 +335,7 @@ impl<'a> Reader<'a> {
         let named =
             |(k, p): (usize, &Element)| p.get("name").is_some_and(|n| !n.is_empty()).then_some(k);
         let places: Vec<usize> =
-            accessor.all("param").enumerate().filter_map(named).take(3).collect();
+            accessor.children_named("param").enumerate().filter_map(named).take(3).collect();
         let [x, y, z] = places[..] else {
             return Err(error_at(accessor, "positions need three named coordinates"));
         };
@@ -371,7 +374,7 @@ impl<'a> Inputs<'a> {
     /// Reads the layout from the elements `input`.
     fn parse(faces: &'a Element) -> Result<Self, Fault> {
         let mut inputs = Self { stride: 1, offset: 0, vertex: None };
-        for input in faces.all("input") {
+        for input in faces.children_named("input") {
             let offset = parse_integer(input, "offset")?.unwrap_or(0);
             if offset > 255 {
                 return Err(error_at(
@@ -401,7 +404,7 @@ impl<'a> Inputs<'a> {
             }
             Ok(indices.into_iter().skip(self.offset).step_by(self.stride).collect())
         };
-        of.all("p").map(list).collect()
+        of.children_named("p").map(list).collect()
     }
 
     /// Returns the faces of an element, without those of fewer than three corners.
@@ -435,7 +438,7 @@ impl<'a> Inputs<'a> {
             }
             "polylist" => {
                 let counts = of
-                    .first("vcount")
+                    .first_child("vcount")
                     .ok_or_else(|| error_at(of, "<polylist> has no vcount, which is required"))?;
                 let corners: Vec<u32> = lists.into_iter().flatten().collect();
                 let mut rest = &corners[..];
@@ -453,7 +456,7 @@ impl<'a> Inputs<'a> {
                 }
             }
             _ => {
-                if let Some(holed) = of.first("ph") {
+                if let Some(holed) = of.first_child("ph") {
                     return Err(error_at(
                         holed,
                         "polygons with holes are not supported; export triangles",

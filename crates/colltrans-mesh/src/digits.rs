@@ -1,19 +1,20 @@
-//! The precision of coordinates that are written as text, from the digits that are written.
+//! Detects the number format of coordinates in a text, and thereby their precision, from the printed digits.
 //!
-//! A writer prints a number of decimals (`%.6f`) or of significant digits (`%g`), so each coordinate that it
-//! had to round ends in the last place that it prints. Numbers that end sooner are exact: those of a drawing
-//! (`12.5`), or binary fractions (`0.0625`). The writer's format is therefore read from the numbers that
-//! can be rounded, without trailing zeros. These are all but binary fractions. A whole number with an exponent
-//! (`1.54245e+07`) belongs to them, because its last digit need not be a unit.
+//! A writer prints a fixed number of decimals (`%.6f`) or of significant digits (`%g`). A coordinate that it
+//! rounds mostly ends in the last place of this format. Numbers that end sooner may be exact: those of a
+//! drawing (`12.5`), or binary fractions (`0.0625`). The format therefore follows from the *rounded* numbers,
+//! without trailing zeros. These are fractions that are not binary fractions, and whole numbers that are
+//! printed with an exponent (`1.54245e+07`). The last digit of the latter need not be a unit.
 //!
-//! - Many different ones ([`MANY`]), more than half of all, end in the same place: *decimals*.
-//! - Or they have the same number of significant digits: *digits*. Of seven digits one may be missing, of
-//!   more two, because the shortest text of a number in single precision has six to nine.
-//! - Neither, or at most [`EXACT`] digits: the numbers are exact decimals, as far as doubles are. The text of
-//!   few digits is rounded nevertheless if zeros fill up each number to the same place ([`fixed_places`]).
-//! - More than [`ALL`] digits: doubles with all their digits.
+//! - *Decimals*: at least [`MANY`] rounded numbers, and more than half of them, have the maximum number of
+//!   decimals.
+//! - *Digits*: as many have the maximum number of significant digits. One digit may be missing from a maximum of
+//!   seven, and two from a larger one, because the shortest text of a number in single precision has six to nine.
+//! - Otherwise the numbers count as exact in the precision in which they are read. So do numbers on a grid
+//!   ([`is_grid`]), numbers of more than [`ALL`] digits, and numbers of at most [`EXACT`] digits. The latter are
+//!   rounded nevertheless if zeros fill up each number to the same place ([`fixed_places`]).
 //!
-//! Up to one number in [`OUTLIERS`] may have more digits than the format has, for example after edits by
+//! The maximum leaves out one number in [`OUTLIERS`], which may have more digits, for example after edits by
 //! hand.
 //!
 //! Digits are those of the shortest decimal that reads as the same double. Up to 15 significant digits that is
@@ -60,7 +61,7 @@ impl fmt::Display for NumberFormat {
 
 /// Maximum number of significant digits that are taken as exact.
 const EXACT: u32 = 4;
-/// Maximum number of significant digits that are fewer than those of a double.
+/// Maximum number of significant digits of a rounded text. A text with more digits has all those of a double.
 const ALL: u32 = 15;
 /// Minimum number of different coordinates that show how a writer rounds.
 const MANY: usize = 4;
@@ -256,7 +257,7 @@ fn finite_numbers(different: &HashMap<u64, Printed>, single: bool) -> Vec<Number
     different.iter().filter_map(number).collect()
 }
 
-/// Returns the largest count, except for those of one number in [`OUTLIERS`].
+/// Returns the largest count after the largest counts of one number in [`OUTLIERS`] are left out; 0 without numbers.
 fn typical_maximum(numbers: &[Decimal], count: fn(&Decimal) -> i32) -> i32 {
     let mut counts: Vec<i32> = numbers.iter().map(count).collect();
     counts.sort_unstable_by_key(|count| std::cmp::Reverse(*count));
@@ -381,8 +382,9 @@ impl Decimal {
         self.digits - self.decimals - 1
     }
 
-    /// Checks whether a writer may have rounded the number: it is not a binary fraction, or it is a whole
-    /// number with an exponent, whose printed digits may end at or before its last digit.
+    /// Checks whether a writer may have rounded the number. A fraction may be rounded unless it is a binary
+    /// fraction. A whole number may be rounded if it was printed with an exponent, because the printed digits may
+    /// end before its units.
     fn may_be_rounded(&self, printed: Printed) -> bool {
         if self.decimals > 0 { !self.is_binary_fraction() } else { printed.has_exponent }
     }

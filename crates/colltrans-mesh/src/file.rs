@@ -27,14 +27,14 @@ pub fn bytes(path: impl AsRef<Path>) -> Result<Vec<u8>> {
 /// # Errors
 /// The errors of [`bytes`], and an error if the text is not UTF-8.
 pub fn text(path: impl AsRef<Path>) -> Result<String> {
-    decoded(bytes(path)?)
+    decode_text(bytes(path)?)
 }
 
 /// Decodes UTF-8, and removes a byte-order mark.
 ///
 /// # Errors
 /// An error if the bytes are not UTF-8. It names UTF-16 if their mark indicates that.
-pub fn decoded(bytes: Vec<u8>) -> Result<String> {
+pub fn decode_text(bytes: Vec<u8>) -> Result<String> {
     let refused = |what| Error::new(ErrorKind::InvalidData, what);
     if crate::text::is_wide(&bytes) {
         return Err(refused("text in UTF-16; save the file as UTF-8"));

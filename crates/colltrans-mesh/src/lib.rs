@@ -105,7 +105,7 @@ impl Format {
     }
 
     /// Lists the names of all formats with the conjunction `word`, for example `STL, OBJ, PLY, OFF or DAE`.
-    pub fn names(word: &str) -> String {
+    pub fn list_names(word: &str) -> String {
         let names: Vec<String> = Self::ALL.iter().map(Self::to_string).collect();
         let (last, others) = names.split_last().map_or(("", &[][..]), |(last, all)| (last, all));
         format!("{} {word} {last}", others.join(", "))
@@ -115,7 +115,7 @@ impl Format {
     ///
     /// # Errors
     /// [`Error::UnknownFormat`] if the path has another extension, or none.
-    pub fn of_path(path: &Path) -> Result<Self, Error> {
+    pub fn from_path(path: &Path) -> Result<Self, Error> {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
         let named = |format: &Self| extension.eq_ignore_ascii_case(format.extension());
         Self::ALL
@@ -140,8 +140,8 @@ pub struct ReadOptions {
     ///
     /// The value 0 merges equal vertices only. `None` selects a few units in the last place of the largest coordinate,
     /// which depends on the [`NumberFormat`]. For single precision (binary STL, PLY with `float`, text of such
-    /// numbers) that is `2^-22` times its magnitude. For other text it is two units in the last place that is printed.
-    /// Otherwise it is `2^-48` times the magnitude.
+    /// numbers) that is `2^-22` times its magnitude. For text that is rounded to fewer digits than doubles have, it is
+    /// two units in the last place that is printed. It is at least `2^-48` times the magnitude, its value for doubles.
     pub merge_tolerance: Option<f64>,
 }
 
@@ -171,7 +171,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh, Error> {
 /// The errors of [`read`], and [`Error::MergeTolerance`] if the tolerance is negative or not finite.
 pub fn read_with(path: impl AsRef<Path>, options: ReadOptions) -> Result<Mesh, Error> {
     let path = path.as_ref();
-    let format = Format::of_path(path)?;
+    let format = Format::from_path(path)?;
     let bytes =
         file::bytes(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
     parse_with(format, bytes, path, options)

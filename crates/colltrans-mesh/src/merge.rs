@@ -12,8 +12,8 @@
 //! - Default tolerance, with the largest coordinate `m` in magnitude: duplicates in single precision differ by
 //!   at most one unit in the last place, `2^-23 m`, per coordinate, hence by `sqrt(3)` times that, at most
 //!   `2^-22 m`. Results in double precision have the errors of a few dozen roundings of `2^-53 m`, for which
-//!   `2^-48 m` suffices. For text with fewer digits ([`digits`](crate::digits)) two units in the last printed
-//!   place correspond to `2^-22 m`.
+//!   `2^-48 m` suffices. For text with fewer digits ([`digits`](crate::digits)) the tolerance is two units in
+//!   the last printed place.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;

@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 
 /// Checks whether a character is invisible or controls the output.
-pub fn steers(c: char) -> bool {
+pub fn is_control(c: char) -> bool {
     c.is_control()
         // Direction marks, line separators, and characters of width zero.
         || matches!(c, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}')
@@ -16,12 +16,12 @@ pub fn steers(c: char) -> bool {
 }
 
 /// Escapes all characters that [steers] matches, for example as `\u{1b}` or `\n`.
-pub fn shown(text: &str) -> Cow<'_, str> {
-    written_out(text, steers, |c| c.escape_default().to_string())
+pub fn escape_control(text: &str) -> Cow<'_, str> {
+    escape_where(text, is_control, |c| c.escape_default().to_string())
 }
 
 /// Replaces the characters that `wanted` matches by the results of `escape`.
-pub fn written_out(
+pub fn escape_where(
     text: &str,
     wanted: impl Fn(char) -> bool,
     escape: impl Fn(char) -> String,
@@ -47,14 +47,14 @@ mod tests {
     #[test]
     fn invisible_characters_are_escaped() {
         let hidden = "a\u{1b}[31m\u{9b}2J\u{202e}b\r\n\u{7}";
-        assert_eq!(shown(hidden), r"a\u{1b}[31m\u{9b}2J\u{202e}b\r\n\u{7}");
+        assert_eq!(escape_control(hidden), r"a\u{1b}[31m\u{9b}2J\u{202e}b\r\n\u{7}");
         for c in "\0\u{1f}\u{7f}\u{80}\u{9f}\u{61c}\u{200b}\u{200c}\u{200d}\u{200e}\u{200f}\u{2028}\u{202e}\
                   \u{2060}\u{2064}\u{2066}\u{2069}\u{feff}\u{e0000}\u{e0041}\u{e007f}"
             .chars()
         {
-            assert!(steers(c), "{c:?}");
+            assert!(is_control(c), "{c:?}");
         }
         let seen = "größer ≥ 3 µm – 測試 é\u{301}";
-        assert!(matches!(shown(seen), Cow::Borrowed(text) if text == seen));
+        assert!(matches!(escape_control(seen), Cow::Borrowed(text) if text == seen));
     }
 }

@@ -1,7 +1,7 @@
-//! Identifies the contents of a file from its first bytes, regardless of its name.
+//! Identifies the contents of a file from its bytes, regardless of its name.
 //!
-//! Only certain results are returned, from signatures and first words that no other format has. A reader might
-//! accept a file of another format: for example, the OBJ reader ignores unknown keywords.
+//! A result is returned only if it is beyond doubt. It follows from the exact size of a binary STL file, or from a
+//! signature or a first word that no other format has.
 
 use crate::Format;
 use crate::stl;
@@ -56,7 +56,7 @@ const OBJ_WORDS: [&str; 11] = ["v", "vt", "vn", "vp", "f", "o", "g", "s", "mtlli
 /// Number of bytes at the start that are searched.
 const SEARCHED_BYTES: usize = 1 << 16;
 
-/// Identifies the contents; `None` if they are not certain.
+/// Identifies the contents; `None` if there is doubt.
 pub(crate) fn identify(bytes: &[u8]) -> Option<Content> {
     if stl::is_exactly_binary(bytes) {
         return Some(Content::Mesh(Format::Stl));

@@ -18,7 +18,7 @@ impl Mesh {
     ///
     /// Two groups belong to one part if at some edge both have sides without a matching side in the opposite
     /// direction.
-    pub fn named(&self) -> Vec<(String, Self)> {
+    pub fn named_parts(&self) -> Vec<(String, Self)> {
         let Groups { names, of_face } = &self.groups;
         if of_face.len() != self.faces.len() || of_face.iter().any(|&g| g as usize >= names.len()) {
             return Vec::new();
@@ -52,13 +52,13 @@ impl Mesh {
             *place = number;
         }
         let of_face: Vec<u32> = of_face.iter().map(|&g| places[&sets.root(g as usize).0]).collect();
-        let meshes = self.picked(&of_face, places.len());
+        let meshes = self.split_faces(&of_face, places.len());
         places.keys().map(|&group| names[group].clone()).zip(meshes).collect()
     }
 
     /// Splits the faces by their numbers. Returns a mesh for each number below `count`, with the faces and the
     /// used vertices in the order of this mesh. All corners must be valid vertex indices.
-    pub fn picked(&self, number_of_face: &[u32], count: usize) -> Vec<Self> {
+    pub fn split_faces(&self, number_of_face: &[u32], count: usize) -> Vec<Self> {
         let mut faces: Vec<Vec<usize>> = vec![Vec::new(); count];
         for (k, &number) in number_of_face.iter().enumerate() {
             if let Some(faces) = faces.get_mut(number as usize) {
@@ -107,14 +107,14 @@ mod tests {
     }
 
     fn part_names(mesh: &Mesh) -> Vec<(String, usize)> {
-        mesh.named().into_iter().map(|(name, mesh)| (name, mesh.faces.len())).collect()
+        mesh.named_parts().into_iter().map(|(name, mesh)| (name, mesh.faces.len())).collect()
     }
 
     #[test]
     fn named_parts_have_their_own_vertices() {
         let (cube, ball) = (block(DVec3::ZERO, DVec3::ONE), ring_sphere(8, 3));
         let mesh = grouped(&[("cube", &cube), ("ball", &ball), ("cube", &cube)]);
-        let named = mesh.named();
+        let named = mesh.named_parts();
         assert_eq!(
             named.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
             ["cube", "ball", "cube"]
@@ -122,7 +122,7 @@ mod tests {
         for ((_, found), part) in named.iter().zip([&cube, &ball, &cube]) {
             assert_eq!((&found.vertices, &found.faces), (&part.vertices, &part.faces));
         }
-        assert!(grouped(&[("cube", &cube)]).named().is_empty());
+        assert!(grouped(&[("cube", &cube)]).named_parts().is_empty());
     }
 
     #[test]
@@ -135,7 +135,7 @@ mod tests {
         };
         let (front, rest) = (of(0..2), of(2..6));
         let beside = block(DVec3::X, DVec3::new(2.0, 1.0, 1.0));
-        assert!(grouped(&[("front", &front), ("rest", &rest)]).named().is_empty());
+        assert!(grouped(&[("front", &front), ("rest", &rest)]).named_parts().is_empty());
         let all = grouped(&[("front", &front), ("beside", &beside), ("rest", &rest)]);
         assert_eq!(part_names(&all), [("front".into(), 6), ("beside".into(), 6)]);
     }
@@ -145,10 +145,10 @@ mod tests {
         let cube = block(DVec3::ZERO, DVec3::ONE);
         let mut mesh = grouped(&[("a", &cube), ("b", &cube)]);
         mesh.faces.pop();
-        assert!(mesh.named().is_empty());
+        assert!(mesh.named_parts().is_empty());
         mesh.groups.of_face.pop();
-        assert_eq!(mesh.named().len(), 2);
+        assert_eq!(mesh.named_parts().len(), 2);
         mesh.groups.of_face[0] = 7;
-        assert!(mesh.named().is_empty());
+        assert!(mesh.named_parts().is_empty());
     }
 }

@@ -6,12 +6,13 @@ use crate::error::{Fault, Place};
 /// The byte-order mark of UTF-8.
 const UTF8_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Checks whether the bytes begin with a byte-order mark of UTF-16 or UTF-32.
+/// Checks whether the bytes begin with a byte-order mark of UTF-16, or of little-endian UTF-32, which begins with the
+/// same bytes.
 pub(crate) fn is_wide(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")
 }
 
-/// Removes a byte-order mark of UTF-8. Rejects UTF-16 and UTF-32, which no mesh format uses.
+/// Removes a byte-order mark of UTF-8. Rejects the marks of [`is_wide`], whose encodings no mesh format uses.
 pub(crate) fn without_mark(bytes: &[u8]) -> Result<&[u8], Fault> {
     if is_wide(bytes) {
         let what = "text in UTF-16; save the file as plain text or UTF-8";

@@ -13,7 +13,7 @@ pub fn number(value: f64) -> String {
 
 /// Formats a number with a known error. It is rounded at the decimal place of the error's first digit, so that
 /// the rounding error is at most the error. Trailing zeros are omitted.
-pub fn known(value: f64, error: f64) -> String {
+pub fn rounded_to_error(value: f64, error: f64) -> String {
     if !value.is_finite() || !error.is_normal() || value == 0.0 {
         return number(value);
     }
@@ -40,11 +40,11 @@ pub fn first_named<T: AsRef<str>>(names: &[T], most: usize) -> String {
 
 /// Formats a measured value with six digits.
 pub fn six_digits(value: f64) -> String {
-    known(value, value.abs() * 1e-5)
+    rounded_to_error(value, value.abs() * 1e-5)
 }
 
 /// Formats an error or a tolerance with one digit, rounded up in magnitude.
-pub fn about(value: f64) -> String {
+pub fn rounded_up(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return number(value);
     }
@@ -66,7 +66,7 @@ pub fn decade(value: f64) -> i32 {
 }
 
 /// Formats a count with the singular or plural of a noun.
-pub fn counted(count: usize, one: &str, many: &str) -> String {
+pub fn count_text(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
@@ -91,7 +91,7 @@ mod tests {
             (1e-6, "1e-6"),
             (-1.2, "-2e0"),
         ] {
-            assert_eq!(about(value), shown);
+            assert_eq!(rounded_up(value), shown);
         }
     }
 
@@ -106,20 +106,20 @@ mod tests {
 
     #[test]
     fn numbers_are_rounded_at_their_error() {
-        assert_eq!(known(1.0 / 3.0, 7e-15), "0.333333333333333");
-        assert_eq!(known(2.000_000_000_000_000_4, 7e-15), "2");
-        assert_eq!(known(-1_234.567_891, 0.02), "-1234.57");
-        assert_eq!(known(-1e-16, 7e-15), "0");
-        assert_eq!(known(123_456.789, 1e3), "123000");
-        assert_eq!(known(1.0 / 3.0, 0.0), (1.0_f64 / 3.0).to_string());
-        assert_eq!(known(9.999_999_999_999_999, 1e-14), "10");
-        assert_eq!(known(1e-20, 1e-30), "1e-20");
-        assert_eq!(known(f64::INFINITY, 1.0), "inf");
+        assert_eq!(rounded_to_error(1.0 / 3.0, 7e-15), "0.333333333333333");
+        assert_eq!(rounded_to_error(2.000_000_000_000_000_4, 7e-15), "2");
+        assert_eq!(rounded_to_error(-1_234.567_891, 0.02), "-1234.57");
+        assert_eq!(rounded_to_error(-1e-16, 7e-15), "0");
+        assert_eq!(rounded_to_error(123_456.789, 1e3), "123000");
+        assert_eq!(rounded_to_error(1.0 / 3.0, 0.0), (1.0_f64 / 3.0).to_string());
+        assert_eq!(rounded_to_error(9.999_999_999_999_999, 1e-14), "10");
+        assert_eq!(rounded_to_error(1e-20, 1e-30), "1e-20");
+        assert_eq!(rounded_to_error(f64::INFINITY, 1.0), "inf");
         // The rounding error is at most the error.
         let mut value = 0.1_f64;
         while value < 1e6 {
             for error in [1e-3, 3e-9, 9.9e-12] {
-                let shown: f64 = known(value, error).parse().unwrap();
+                let shown: f64 = rounded_to_error(value, error).parse().unwrap();
                 assert!((shown - value).abs() <= error, "{value} {error}");
             }
             value *= 1.37;
@@ -134,6 +134,6 @@ mod tests {
     #[test]
     fn signed_zeros_print_as_zero() {
         assert_eq!([0.0, -0.0].map(number), ["0", "0"]);
-        assert_eq!([0.0, -0.0].map(about), ["0", "0"]);
+        assert_eq!([0.0, -0.0].map(rounded_up), ["0", "0"]);
     }
 }

@@ -25,7 +25,7 @@ use crate::mesh::Mesh;
 pub fn write(mesh: &Mesh, path: impl AsRef<Path>) -> Result<(), Error> {
     let path = path.as_ref();
     let not_storable = |what: &str| Error::NotStorable { path: path.to_owned(), what: what.into() };
-    let bytes = match Format::of_path(path)? {
+    let bytes = match Format::from_path(path)? {
         Format::Stl => to_stl(mesh).ok_or_else(|| {
             not_storable("STL files have only triangles, fewer than 2^32; triangulate the faces, or write OBJ or OFF")
         })?,

@@ -9,7 +9,7 @@ use quick_xml::name::ResolveResult;
 const MAX_DEPTH: usize = 64;
 
 /// A place, such as a line, and the reason of an error.
-pub type Fault = (String, String);
+pub type XmlError = (String, String);
 
 /// An element of an XML document.
 #[derive(Debug, Default)]
@@ -30,7 +30,7 @@ impl Element {
     ///
     /// # Errors
     /// [`Fault`] with place and reason.
-    pub fn parse(text: &str) -> Result<Self, Fault> {
+    pub fn parse(text: &str) -> Result<Self, XmlError> {
         let mut reader = quick_xml::Reader::from_str(text);
         let mut lines = Lines::new(text);
         // The stack of open elements. The first entry represents the document.
@@ -38,7 +38,7 @@ impl Element {
         loop {
             let line = lines.at(reader.buffer_position());
             let place = || format!("line {line}");
-            let event = reader.read_event().map_err(|e| (place(), told(&e)))?;
+            let event = reader.read_event().map_err(|e| (place(), parse_error_reason(&e)))?;
             let (tag, ends) = match &event {
                 Event::Start(tag) => (tag, false),
                 Event::Empty(tag) => (tag, true),
@@ -78,13 +78,13 @@ impl Element {
     }
 
     /// Returns the child elements with this name.
-    pub fn all(&self, name: &'static str) -> impl Iterator<Item = &Self> {
+    pub fn children_named(&self, name: &'static str) -> impl Iterator<Item = &Self> {
         self.children.iter().filter(move |child| child.name == name)
     }
 
     /// Returns the first child element with this name, or `None`.
-    pub fn first(&self, name: &'static str) -> Option<&Self> {
-        self.all(name).next()
+    pub fn first_child(&self, name: &'static str) -> Option<&Self> {
+        self.children_named(name).next()
     }
 
     /// Returns the value of an attribute, or `None`.
@@ -96,7 +96,7 @@ impl Element {
     ///
     /// # Errors
     /// A message if the attribute is missing.
-    pub fn need(&self, name: &str) -> Result<&str, String> {
+    pub fn required(&self, name: &str) -> Result<&str, String> {
         self.get(name)
             .ok_or_else(|| format!("<{}> has no attribute {name}, which is required", self.name))
     }
@@ -139,7 +139,7 @@ fn attributes_by_name(tag: &BytesStart) -> Result<HashMap<String, String>, Strin
 }
 
 /// Returns the message of a parse error without the prefixes of the parser.
-pub fn told(error: &quick_xml::Error) -> String {
+pub fn parse_error_reason(error: &quick_xml::Error) -> String {
     let message = error.to_string();
     let message = message.strip_prefix("ill-formed document: ").unwrap_or(&message);
     message.strip_prefix("syntax error: ").unwrap_or(message).to_owned()

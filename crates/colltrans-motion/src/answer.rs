@@ -16,8 +16,8 @@ use colltrans_convex::body::{Features, Pose};
 pub enum MotionOutcome<P = MotionProof, C = MotionContact<P>> {
     /// The bodies meet, at a time between two bounds.
     Contact(C),
-    /// The bodies come nearer than rounding errors can decide. They do not meet before [`MotionContact::lower`]. A
-    /// contact is not proven, and later times are not decided.
+    /// The bodies are so near that rounding errors hide whether they meet. They do not meet before
+    /// [`MotionContact::lower`]. A contact is not proven, and later times are not decided.
     Grazing(C),
     /// The bodies do not meet during the whole motion.
     Free(MotionFree<P>),
@@ -36,14 +36,17 @@ pub struct MotionContact<P = MotionProof> {
     /// Time up to which the bodies do not meet; 0 if they overlap at the start.
     pub lower: f64,
     /// Time at which the bodies meet; infinity (`null` in JSON) if a contact is not proven.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(with = "colltrans_kernel::serialization::null_as_infinity")
+    )]
     pub upper: f64,
     /// Poses of both bodies at the lower bound, rounded.
     pub poses: [Pose; 2],
     /// Nearest points of both bodies at the lower bound, in the world, rounded. `None` if no distance was computed.
     pub points: Option<[DVec3; 2]>,
-    /// Unit normal at the lower bound, in the world, from the moving body to the fixed one. `None` if it has no
-    /// direction.
+    /// Unit normal at the lower bound, in the world, from the moving body to the fixed one. `None` if no separating
+    /// plane was found at this time.
     pub normal: Option<DVec3>,
     /// Features of both bodies that face each other across the normal.
     pub features: Option<Features>,
@@ -76,13 +79,13 @@ pub struct MotionSteps {
     /// For solids, number of pairs of tree nodes, each with a time interval.
     #[cfg_attr(
         feature = "serde",
-        serde(default, skip_serializing_if = "colltrans_kernel::written::is_none")
+        serde(default, skip_serializing_if = "colltrans_kernel::serialization::is_zero_count")
     )]
     pub nodes: u64,
     /// For solids, number of pairs of facets that were sampled.
     #[cfg_attr(
         feature = "serde",
-        serde(default, skip_serializing_if = "colltrans_kernel::written::is_none")
+        serde(default, skip_serializing_if = "colltrans_kernel::serialization::is_zero_count")
     )]
     pub leaves: u64,
 }
@@ -97,23 +100,23 @@ impl std::ops::AddAssign for MotionSteps {
 }
 
 /// An answer with a proof.
-pub trait Proven<P> {
+pub trait HasProof<P> {
     /// Returns the proof and the work of the search.
     #[doc(hidden)]
-    fn proven(&self) -> (&P, MotionSteps);
+    fn proof_and_steps(&self) -> (&P, MotionSteps);
 }
 
-impl<P> Proven<P> for MotionContact<P> {
-    fn proven(&self) -> (&P, MotionSteps) {
+impl<P> HasProof<P> for MotionContact<P> {
+    fn proof_and_steps(&self) -> (&P, MotionSteps) {
         (&self.proof, self.steps)
     }
 }
 
-impl<P, C: Proven<P>> MotionOutcome<P, C> {
+impl<P, C: HasProof<P>> MotionOutcome<P, C> {
     fn proven(&self) -> (&P, MotionSteps) {
         match self {
             Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) | Self::Undecided(of) => {
-                of.proven()
+                of.proof_and_steps()
             }
             Self::Free(of) => (&of.proof, of.steps),
         }

@@ -11,8 +11,8 @@ use glam::DVec3;
 
 use super::curvature::perpendicular_part;
 use super::span::{Instant, Span};
-use colltrans_convex::body::Hull;
-use colltrans_kernel::motion::{Moved, Piece};
+use colltrans_convex::body::VertexHull;
+use colltrans_kernel::motion::{Piece, PiecePlacement};
 
 /// Error bound of the sums in this module, relative to the sizes.
 const SUM_ERROR: f64 = 1e-14;
@@ -21,9 +21,9 @@ const SUM_ERROR: f64 = 1e-14;
 const SAME_SPIN: f64 = 1e-12;
 
 /// Returns an upper bound of the loss of gap, over an interval, of the plane with a fixed normal.
-pub(super) fn gap_loss<B: Hull>(
+pub(super) fn gap_loss<B: VertexHull>(
     span: &Span<B>,
-    ends: [&Instant<[Moved; 2], B>; 2],
+    ends: [&Instant<[PiecePlacement; 2], B>; 2],
     normal: DVec3,
 ) -> f64 {
     let h = ends[1].time - ends[0].time;
@@ -36,9 +36,9 @@ pub(super) fn gap_loss<B: Hull>(
 }
 
 /// Returns an upper bound of the rise, within an interval, of the highest point of a body along a normal.
-fn max_rise<B: Hull>(
+fn max_rise<B: VertexHull>(
     span: &Span<B>,
-    ends: [&Instant<[Moved; 2], B>; 2],
+    ends: [&Instant<[PiecePlacement; 2], B>; 2],
     which: usize,
     normal: DVec3,
 ) -> f64 {
@@ -54,7 +54,7 @@ fn max_rise<B: Hull>(
         [perpendicular_part(normal, piece.axis), normal.cross(piece.axis) * angle.signum()];
     let along = normal - n;
     let (mut highest, mut highest_at_start) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-    for v in body.corners() {
+    for v in body.hull_vertices() {
         let first = moved[0].arm + moved[0].rotation * *v;
         let last = moved[1].arm + moved[1].rotation * *v;
         // The slopes at both ends decide whether the peak is between them.
@@ -73,8 +73,9 @@ fn max_rise<B: Hull>(
 }
 
 /// Returns an upper bound of the gap that a plane loses while the moving body carries it for a time `h`. `offset` is
-/// the vector from the axis of the moving body to that of the fixed body at the start.
-pub(super) fn carried_gap_loss<B: Hull>(
+/// the vector from the axis of the moving body to that of the fixed body at the start. Returns infinity unless both
+/// bodies rotate.
+pub(super) fn carried_gap_loss<B: VertexHull>(
     span: &Span<B>,
     offset: DVec3,
     h: f64,
@@ -106,7 +107,7 @@ pub(super) fn carried_gap_loss<B: Hull>(
 }
 
 /// Checks whether both bodies have the same angular velocity, up to rounding.
-pub(super) fn has_same_spin<B: Hull>(span: &Span<B>) -> bool {
+pub(super) fn has_same_spin<B: VertexHull>(span: &Span<B>) -> bool {
     let [p, q] = [span.piece(0), span.piece(1)];
     let spin_difference = q.axis * q.rate - p.axis * p.rate;
     p.rate != 0.0 && spin_difference.length() <= SAME_SPIN * p.rate.abs()

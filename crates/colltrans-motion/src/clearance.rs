@@ -12,7 +12,7 @@ use super::search::{SpanEnd, SpanResult, prove_span};
 use super::span::{Span, split_into_spans};
 use super::{MotionCast, check_accuracy, default_tolerance, step_limit_error};
 use colltrans_convex::answer::Bounded;
-use colltrans_convex::body::Hull;
+use colltrans_convex::body::VertexHull;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::Overlap;
@@ -33,8 +33,9 @@ const FIRST_BACK_SHARE: f64 = 0.125;
 pub enum MotionClearance<P = MotionProof> {
     /// The body moves until it touches the other body.
     Blocked {
-        /// Time up to which the body can move. At no earlier time do the bodies with the tolerance meet, nor do the
-        /// nominal blocking bodies or facets.
+        /// Time up to which the body can move: the smaller of the lower bounds of the nominal contact
+        /// ([`MotionStop::time`]) and of the contact with the tolerance ([`MotionStop::shrunk`]). The bodies with the
+        /// tolerance do not meet before.
         time: f64,
         /// The contact that stops the body.
         contact: Box<MotionStop<P>>,
@@ -50,9 +51,13 @@ pub enum MotionClearance<P = MotionProof> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MotionStop<P = MotionProof> {
-    /// Time at which the nominal bodies meet; for solids, the two facets that stop them. They do not meet between the
-    /// last sampled time at which they are separated and the lower bound. At the upper bound they have met, or the
-    /// bodies with the tolerance have. An infinite upper bound means that this is not proven.
+    /// Bounds of the time at which the nominal bodies meet; for solids, the two facets that stop them. The search
+    /// starts at the last sampled time at which they are separated, and proves that they do not meet from there to the
+    /// lower bound. If they are separated at no sampled time, for example because they are in contact from the start,
+    /// or if this search finds no contact, the time is extrapolated and its lower bound is not proven.
+    ///
+    /// At the upper bound the nominal bodies meet, or the bodies with the tolerance do. It is infinity if neither is
+    /// proven.
     pub time: Bounded,
     /// Length of the tolerance, in world units.
     pub tolerance: f64,
@@ -97,12 +102,12 @@ impl<P> MotionClearance<P> {
 impl MotionCast<'_> {
     /// Computes how far the body can move along its motion.
     ///
-    /// The query uses the [tolerance](Self::tolerating), or a default that covers the rounding errors of a fit. Bodies
-    /// in contact may therefore slide, rotate and separate, and are stopped where they would be pushed together. A
-    /// [minimum gap](Self::keeping) may be violated by the tolerance.
+    /// The query uses the [tolerance](Self::tolerating), or a default: a multiple of the error bound of computed
+    /// points. Bodies in contact may therefore slide, rotate and separate, and are stopped where they would be pushed
+    /// together. The distance may fall below a [minimum gap](Self::keeping) by the tolerance.
     ///
-    /// The proof in the answer belongs to the query [`Self::cleared`]. [Solids](MotionCast::between) also offer other
-    /// meanings of an overlap at the start.
+    /// The proof in the answer belongs to the query [`Self::cleared`]. For [solids](MotionCast::between_any),
+    /// [`MotionCast::with_start_overlap`] selects how an overlap at the start is treated.
     ///
     /// # Errors
     /// Returns the errors of [`Self::first_contact`], and [`QueryError::NotConverged`] if the search took its maximum
@@ -117,7 +122,7 @@ impl MotionCast<'_> {
     /// let block = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
     /// let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))?;
     /// let clearance = |axis| {
-    ///     let turn = Motion::turn(Pose::IDENTITY, DVec3::new(0.5, 0.5, 0.0), axis, 2.0)?;
+    ///     let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::new(0.5, 0.5, 0.0), axis, 2.0)?;
     ///     let cast = MotionCast::new(block.along(&turn), table.at(Pose::IDENTITY))?;
     ///     Ok::<_, Box<dyn std::error::Error>>(cast.clearance()?)
     /// };
@@ -132,7 +137,7 @@ impl MotionCast<'_> {
         if self.tolerance() == 0.0 {
             check_accuracy(bodies, tolerance)?;
         }
-        let cleared = self.cleared();
+        let cleared = self.with_clearance_tolerance();
         let shrunk = match cleared.first_contact()? {
             MotionOutcome::Free(free) => return Ok(MotionClearance::Free(free)),
             MotionOutcome::Overlapping(_) => {
@@ -143,7 +148,7 @@ impl MotionCast<'_> {
         };
         let bounds = [shrunk.lower, shrunk.upper];
         let shrunk_spans = split_into_spans(bodies, motions, cleared.min_gap);
-        let nominal_spans = split_into_spans(bodies, motions, self.keep());
+        let nominal_spans = split_into_spans(bodies, motions, self.min_gap());
         let mut sampler = ConvexSampler::default();
         let rate = sample_in_spans(&shrunk_spans, shrunk.lower, &mut sampler)
             .map_or(0.0, |sample| sample.rate);
@@ -154,8 +159,8 @@ impl MotionCast<'_> {
     /// Returns the cast with the tolerance of its [clearance](Self::clearance). The proof of the clearance can be
     /// verified with it.
     #[must_use]
-    pub fn cleared(&self) -> Self {
-        Self { min_gap: self.keep() - self.tolerance_or_default(), ..self.clone() }
+    pub fn with_clearance_tolerance(&self) -> Self {
+        Self { min_gap: self.min_gap() - self.tolerance_or_default(), ..self.clone() }
     }
 
     /// Returns the tolerated depth, or the default tolerance if none was set.
@@ -171,29 +176,29 @@ impl MotionCast<'_> {
         let least = pair.and_then(|pair| {
             let deep = pair.depth().ok()?.upper;
             let far = if deep > 0.0 { 0.0 } else { pair.distance().ok()?.lower };
-            Some(self.keep() + deep - far)
+            Some(self.min_gap() + deep - far)
         });
         MotionOverlap { least_tolerance: least, place: None }
     }
 }
 
 /// Samples the distance at a time, in the span that contains it. Returns `None` if the time is before the first span.
-pub(super) fn sample_in_spans<'a, B: Hull, L: Sampler<B>>(
+pub(super) fn sample_in_spans<'a, B: VertexHull, L: Sampler<B>>(
     spans: &[Span<'a, B>],
     time: f64,
     sampler: &mut L,
-) -> Option<Sample<'a, [colltrans_kernel::motion::Moved; 2], B>> {
+) -> Option<Sample<'a, [colltrans_kernel::motion::PiecePlacement; 2], B>> {
     let span = spans.iter().rev().find(|span| span.from <= time)?;
     Some(sampler.sample(span, time))
 }
 
-/// Computes when the nominal bodies meet, for bodies that meet with the tolerance between `lower` and `upper`.
-/// `added_gap` is the gap that the tolerance has added, `rate` its closing speed.
+/// Computes bounds of the time at which the nominal bodies meet, for bodies that meet with the tolerance between
+/// `lower` and `upper`. `added_gap` is the gap that the tolerance has added, `rate` its closing speed.
 ///
-/// Samples times at growing distances before `lower`, until the bodies are separated, and searches for the contact from
-/// there on. If they are never separated, for example if one rests on the other from the start, the time is
-/// extrapolated with the present rate.
-pub(super) fn nominal_contact_time<B: Hull, L: Sampler<B>>(
+/// Samples times at growing distances before the extrapolated contact, until the bodies are separated, and searches for
+/// the contact from there on. If they are never separated, for example if one rests on the other from the start, or if
+/// this search finds no contact, the time is extrapolated with the present rate.
+pub(super) fn nominal_contact_time<B: VertexHull, L: Sampler<B>>(
     spans: &[Span<B>],
     sampler: &mut L,
     [added_gap, rate]: [f64; 2],

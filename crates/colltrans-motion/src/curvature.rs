@@ -1,20 +1,21 @@
-//! Curvature bounds: prove the time between two planes of rotating bodies.
+//! Curvature bounds: prove that two rotating bodies are separated between the times of two planes.
 //!
 //! With gaps `s_a`, `s_b` at the ends of an interval, the gap at its share `x` is at least `(1 - x) s_a + x s_b - C x
 //! (1 - x) / 2`. It is positive throughout if `sqrt(s_a) + sqrt(s_b) > sqrt(C / 2)`. Derivation:
 //! `docs/theory/motion-bounds.md`.
 //!
-//! - `C = C_P + C_Q + 2 dn.dc`: `dn` is the change of the normal, `dc` that of the vector between the axes.
+//! - `C = C_P + C_Q + 2 dn.dc`: `dn` is the change of the normal, `dc` that of the vector between the axes. A tolerated
+//!   depth `w` adds `2 w |dn|^2`.
 //! - `C_P`: the maximum support of `P`, in its frame, along `W = alpha^2 n_across + 2 alpha k x dn`; `-W` for `Q`.
-//!   `alpha` is the angle of rotation about the axis `k`.
+//!   `alpha` is the angle of rotation about the axis `k`, `n_across` the part of the normal perpendicular to `k`.
 //! - *Loose* bound of `C_P`: `max |W|` times the distance of the body from its axis. It needs no support points.
-//! - *Tight* bound of `C_P`: four support points, divided by `cos(alpha / 2)`.
+//! - *Tight* bound of `C_P`, up to 2 radians: four support points, divided by a lower bound of `cos(alpha / 2)`.
 
 use glam::DVec3;
 
 use super::span::{Instant, Span};
-use colltrans_convex::body::{ConvexPolyhedron, Hull};
-use colltrans_kernel::motion::Moved;
+use colltrans_convex::body::{ConvexPolyhedron, VertexHull};
+use colltrans_kernel::motion::PiecePlacement;
 
 /// Relative error bound of the sums in this module.
 const SUM_ERROR: f64 = 1e-13;
@@ -44,7 +45,7 @@ impl SupportSearch<ConvexPolyhedron> for HillClimbing {
             return 0.0;
         }
         let unit = normal / length;
-        let (vertex, beyond) = body.settled(unit, body.support(unit).0);
+        let (vertex, beyond) = body.support_with_excess(unit, body.support(unit).0);
         normal.dot(body.vertices()[vertex as usize]) + beyond * length
     }
 }
@@ -52,17 +53,17 @@ impl SupportSearch<ConvexPolyhedron> for HillClimbing {
 /// Finds support points by a scan of all vertices.
 pub(super) struct VertexScan;
 
-impl<B: Hull> SupportSearch<B> for VertexScan {
+impl<B: VertexHull> SupportSearch<B> for VertexScan {
     fn support_bound(&self, body: &B, normal: DVec3) -> f64 {
-        body.corners().iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max)
+        body.hull_vertices().iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
 /// Computes an upper bound of `C` between two planes: the loose bound if it is at most `enough`, otherwise the tight
 /// bound.
-pub(super) fn curvature_bound<'a, B: Hull>(
+pub(super) fn curvature_bound<'a, B: VertexHull>(
     span: &Span<'a, B>,
-    ends: [&Instant<'a, [Moved; 2], B>; 2],
+    ends: [&Instant<'a, [PiecePlacement; 2], B>; 2],
     normals: [DVec3; 2],
     enough: f64,
     supports: &impl SupportSearch<B>,
@@ -82,7 +83,7 @@ pub(super) fn curvature_bound<'a, B: Hull>(
 }
 
 /// Returns an upper bound of `C` divided by the square of the interval, for a normal that hardly rotates.
-pub(super) fn typical_curvature<B: Hull>(span: &Span<B>) -> f64 {
+pub(super) fn typical_curvature<B: VertexHull>(span: &Span<B>) -> f64 {
     let of = |which: usize| {
         let piece = span.piece(which);
         let reach = span.body(which).reach() + perpendicular_part(piece.arm, piece.axis).length();
@@ -95,15 +96,15 @@ pub(super) fn typical_curvature<B: Hull>(span: &Span<B>) -> f64 {
 struct TurningBody<'s, 'a, B> {
     which: usize,
     span: &'s Span<'a, B>,
-    ends: [&'s Instant<'a, [Moved; 2], B>; 2],
+    ends: [&'s Instant<'a, [PiecePlacement; 2], B>; 2],
     end_vectors: [DVec3; 2],
     angle: f64,
 }
 
-impl<'s, 'a, B: Hull> TurningBody<'s, 'a, B> {
+impl<'s, 'a, B: VertexHull> TurningBody<'s, 'a, B> {
     fn new(
         span: &'s Span<'a, B>,
-        ends: [&'s Instant<'a, [Moved; 2], B>; 2],
+        ends: [&'s Instant<'a, [PiecePlacement; 2], B>; 2],
         normals: [DVec3; 2],
         which: usize,
         h: f64,

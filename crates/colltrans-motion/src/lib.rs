@@ -12,7 +12,7 @@
 //! // A door, 1 wide, swings by 90 degrees about the z axis; a post is in its way at 45 degrees.
 //! let door = ConvexPolyhedron::cuboid(DVec3::new(0.0, -0.02, 0.0), DVec3::new(1.0, 0.02, 2.0))?;
 //! let post = ConvexPolyhedron::cuboid(DVec3::splat(-0.05), DVec3::splat(0.05))?;
-//! let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2)?;
+//! let swing = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2)?;
 //! let post_pose = Pose::from_translation(DVec3::new(0.6, 0.6, 1.0))?;
 //!
 //! let cast = MotionCast::new(door.along(&swing), post.at(post_pose))?;
@@ -33,7 +33,7 @@
 //!
 //! - A *plane* at a time is a unit normal `n` with its gap `s = min_Q n.q - max_P n.p`.
 //! - In a *span* both bodies rotate at a constant rate.
-//! - `curvature` proves the time between two planes, with any normals, by a bound of the second derivative of the gap.
+//! - `curvature` proves separation between the times of two planes, by a bound of the second derivative of the gap.
 //! - `arc` proves an interval by one plane, on whose sides all vertices stay on their arcs.
 //! - `search` chooses the times and joins the planes; `sample` computes the distance at one time.
 //!
@@ -76,18 +76,18 @@ use std::borrow::Cow;
 
 use derive_where::derive_where;
 
-pub use self::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps, Proven};
+pub use self::answer::{HasProof, MotionContact, MotionFree, MotionOutcome, MotionSteps};
 pub use self::clearance::{MotionClearance, MotionOverlap, MotionStop};
-pub use self::proof::{Meeting, Met, MotionProof, PlaneAt};
+pub use self::proof::{ContactProof, MotionProof, ProvenContact, TimedPlane};
 use self::sample::ConvexSampler;
 use self::search::{SpanEnd, SpanResult, prove_span};
 #[cfg(feature = "json")]
-pub use self::solid::Parts;
-pub use self::solid::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, SpanProof};
+pub use self::solid::ProofFacets;
+pub use self::solid::{FacetContact, FacetContactProof, MotionCover, SolidMotionProof, SpanProof};
 use self::span::{Span, split_into_spans};
 pub use self::verify::MotionProofError;
 pub use colltrans_convex::body::Moving;
-use colltrans_convex::body::{ConvexPolyhedron, Hull};
+use colltrans_convex::body::{ConvexPolyhedron, VertexHull};
 use colltrans_convex::setting::check_min_gap;
 use colltrans_convex::setting::error::{QueryError, Stalled};
 pub use colltrans_kernel::error::MotionError;
@@ -118,7 +118,7 @@ pub struct MotionCast<'a, B = ConvexPolyhedron> {
 
 impl<'a, B> MotionCast<'a, B> {
     /// Builds the cast of two bodies [along](ConvexPolyhedron::along) a motion or [at](ConvexPolyhedron::at) a pose,
-    /// both convex or both solids. For bodies of different kinds, see [`Self::between`](MotionCast::between).
+    /// both convex or both solids. For bodies of different kinds, see [`Self::between`](MotionCast::between_any).
     ///
     /// # Errors
     /// Returns no error at present, because bodies and motions are checked when they are built.
@@ -137,7 +137,7 @@ impl<'a, B> MotionCast<'a, B> {
     }
 
     /// Returns the minimum gap, in world units; 0 if none was set.
-    pub fn keep(&self) -> f64 {
+    pub fn min_gap(&self) -> f64 {
         self.min_gap.max(0.0)
     }
 
@@ -162,8 +162,8 @@ impl MotionCast<'_> {
     /// to the gap. Replaces a tolerated depth.
     ///
     /// # Errors
-    /// Returns [`QueryError::Keep`] if the gap is negative, not finite or out of range.
-    pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
+    /// Returns [`QueryError::MinGap`] if the gap is negative, not finite or out of range.
+    pub fn with_min_gap(self, gap: f64) -> Result<Self, QueryError> {
         check_min_gap(gap)?;
         Ok(Self { min_gap: gap, ..self })
     }
@@ -176,7 +176,7 @@ impl MotionCast<'_> {
     ///
     /// # Errors
     /// Returns [`QueryError::Tolerance`] if the depth is negative, not finite or out of range.
-    pub fn tolerating(self, depth: f64) -> Result<Self, QueryError> {
+    pub fn with_tolerance(self, depth: f64) -> Result<Self, QueryError> {
         check_depth(depth)?;
         Ok(Self { min_gap: -depth, ..self })
     }
@@ -188,7 +188,7 @@ impl MotionCast<'_> {
     /// tolerated.
     ///
     /// # Errors
-    /// Returns [`QueryError::Coarse`] if the bodies may meet and the error of computed places exceeds their size.
+    /// Returns [`QueryError::PositionError`] if the bodies may meet and the error of computed places exceeds their size.
     pub fn first_contact(&self) -> Result<MotionOutcome, QueryError> {
         let found = self.first_contact_of_convex()?;
         let MotionOutcome::Undecided(undecided) = &found else { return Ok(found) };
@@ -198,12 +198,12 @@ impl MotionCast<'_> {
     /// Returns the cast of the same bodies as solids, without a tolerance. The minimum gap is increased by the distance
     /// of input points from the faces of the bodies.
     #[doc(hidden)]
-    pub fn between_solids(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
+    pub fn as_solid_cast(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
         let moving = Moving { body: self.moving.body, motion: Cow::Borrowed(&*self.moving.motion) };
         let fixed = Moving { body: self.fixed.body, motion: Cow::Borrowed(&*self.fixed.motion) };
-        MotionCast::between(moving, fixed)?
-            .tolerating(0.0)?
-            .keeping(self.min_gap + self.input_excess())
+        MotionCast::between_any(moving, fixed)?
+            .with_tolerance(0.0)?
+            .with_min_gap(self.min_gap + self.input_excess())
     }
 
     /// Returns how far the input points of both bodies may be outside their faces, in world units; 0 if none is
@@ -221,7 +221,7 @@ impl MotionCast<'_> {
 
     /// Returns the answer of the search between solids. Returns `None` if it proves no more than `undecided`.
     fn outcome_of_solids(&self, undecided: &MotionContact) -> Option<MotionOutcome> {
-        let outcome = self.between_solids().ok()?.certified_first_contact().ok()?;
+        let outcome = self.as_solid_cast().ok()?.certified_first_contact().ok()?;
         let mut steps = undecided.steps;
         steps += outcome.steps();
         let solids = Some(Box::new(outcome.proof().clone()));
@@ -261,7 +261,7 @@ impl MotionCast<'_> {
                 SpanEnd::Free => {}
                 SpanEnd::Met(time, met) => {
                     let bounds = [proof.reached(), time];
-                    proof.meeting = Some(Meeting { time, met });
+                    proof.meeting = Some(ProvenContact { time, met });
                     let contact = build_contact(&span, &mut sampler, bounds, proof, steps);
                     let of = if time == 0.0 { Overlapping } else { Contact };
                     return Ok(of(contact));
@@ -298,9 +298,9 @@ fn check_depth(depth: f64) -> Result<(), QueryError> {
 
 /// Checks that the bodies are larger than the error `off` of computed places. Two points always pass, because no body
 /// is smaller.
-fn check_accuracy<B: Hull>(bodies: [&B; 2], off: f64) -> Result<(), QueryError> {
+fn check_accuracy<B: VertexHull>(bodies: [&B; 2], off: f64) -> Result<(), QueryError> {
     let size = bodies[0].reach() + bodies[1].reach();
-    if size > 0.0 && off > size { Err(QueryError::Coarse { off, size }) } else { Ok(()) }
+    if size > 0.0 && off > size { Err(QueryError::PositionError { off, size }) } else { Ok(()) }
 }
 
 /// Builds the report of a contact, or of a possible contact, between two times of a span.
@@ -327,10 +327,10 @@ fn step_limit_error(undecided: &MotionContact<impl Sized>) -> QueryError {
 
 /// Computes the default tolerance of bodies along their motions, in world units: a multiple of the error of computed
 /// points.
-fn default_tolerance<B: Hull>(bodies: [&B; 2], motions: [&Motion; 2]) -> f64 {
+fn default_tolerance<B: VertexHull>(bodies: [&B; 2], motions: [&Motion; 2]) -> f64 {
     let off = split_into_spans(bodies, motions, 0.0).into_iter().map(|span| {
-        let ends = [span.from, span.to].map(|time| span.instant_at(time).bodies.scale());
-        Noise::of(ends[0].max(ends[1])).point() + span.error
+        let ends = [span.from, span.to].map(|time| span.instant_at(time).bodies.size());
+        Noise::for_size(ends[0].max(ends[1])).point_error() + span.error
     });
     DEFAULT_TOLERANCE_FACTOR * off.fold(0.0, f64::max)
 }

@@ -14,11 +14,15 @@ use colltrans_convex::answer::{Depth, NearPoints};
 )]
 pub struct MotionProof {
     /// For each span in which both bodies rotate at a constant rate, up to the one with the contact: planes in the
-    /// order of time, each joined to the next one. A list is empty if the bodies meet when its span begins.
-    pub spans: Vec<Vec<PlaneAt>>,
+    /// order of time, each joined to the next one. A list is empty if the bodies meet, or cannot be separated, at the
+    /// start of its span.
+    pub spans: Vec<Vec<TimedPlane>>,
     /// Proof that the bodies meet at a time.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
-    pub meeting: Option<Meeting>,
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "colltrans_kernel::serialization::required_option")
+    )]
+    pub meeting: Option<ProvenContact>,
     /// Proof of the same query for the bodies as solids, in place of planes. `None` unless the search between convex
     /// bodies took its maximum number of steps.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
@@ -32,7 +36,7 @@ pub struct MotionProof {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
-pub struct PlaneAt {
+pub struct TimedPlane {
     /// Time of the plane.
     pub time: f64,
     /// Unit normal in the world, from the moving body to the fixed one.
@@ -51,7 +55,7 @@ pub struct PlaneAt {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
-pub enum Met {
+pub enum ContactProof {
     /// The bodies overlap by more than the tolerated depth.
     Deep(Box<Depth>),
     /// Two points are not farther apart than the minimum gap.
@@ -65,16 +69,16 @@ pub enum Met {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
-pub struct Meeting {
+pub struct ProvenContact {
     /// Time of the contact.
     pub time: f64,
     /// Proof for this time.
-    pub met: Met,
+    pub met: ContactProof,
 }
 
 impl MotionProof {
     /// Returns the number of planes; for solids, the number of entries of the cover.
-    pub fn planes(&self) -> usize {
+    pub fn plane_count(&self) -> usize {
         let entries = |solids: &SolidMotionProof| -> usize {
             solids.spans.iter().map(|span| span.cover.len()).sum()
         };

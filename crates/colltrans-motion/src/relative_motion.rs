@@ -11,10 +11,10 @@ use super::curvature::{
     ROOT_MARGIN, SupportSearch, curvature_bound, max_provable_curvature, perpendicular_part,
     typical_curvature,
 };
-use super::proof::PlaneAt;
+use super::proof::TimedPlane;
 use super::span::{Instant, Span};
-use colltrans_convex::body::Hull;
-use colltrans_kernel::motion::Moved;
+use colltrans_convex::body::VertexHull;
+use colltrans_kernel::motion::PiecePlacement;
 
 /// Maximum length of the cross product of two axes that count as parallel.
 const PARALLEL_LENGTH: f64 = 1e-9;
@@ -26,7 +26,7 @@ pub(super) type InstantOf<'a, C> =
 /// Two bodies over a time range.
 pub(super) trait RelativeMotion<'a> {
     /// The type of both bodies.
-    type Body: Hull + 'a;
+    type Body: VertexHull + 'a;
     /// Additional data of an instant, one entry for each body.
     type Moved: Copy;
 
@@ -64,27 +64,30 @@ pub(super) trait RelativeMotion<'a> {
     /// Returns an upper bound of the gap that a plane with a fixed normal loses from the first to the second time.
     fn gap_loss(&self, ends: [&InstantOf<'a, Self>; 2], normal: DVec3) -> f64;
 
-    /// Returns a normal perpendicular to the axis of a rotating body, towards a point of the other body. Its plane may
-    /// be outside the volume swept by the rotation. Returns `None` if there is no such normal.
+    /// Returns the normal, from the moving to the fixed body, along the perpendicular from the axis of a rotating body
+    /// to a point of the other body. `points` has a point of each body, in its frame. The plane may lie outside the
+    /// volume swept by the rotation. Returns `None` if there is no such normal.
     fn radial_normal(&self, at: &InstantOf<'a, Self>, points: [DVec3; 2]) -> Option<DVec3> {
         let _ = (at, points);
         None
     }
 
     /// Returns the normal along the shortest connection of both axes, from the moving body to the fixed one. For two
-    /// round bodies its plane separates the swept volumes. Returns `None` unless both bodies rotate.
+    /// round bodies its plane separates the swept volumes. Returns `None` unless both bodies rotate about different
+    /// axes.
     fn normal_between_axes(&self, at: &InstantOf<'a, Self>) -> Option<DVec3> {
         let _ = at;
         None
     }
 
-    /// Returns the sum of the angular speeds of both bodies, in radians per unit of time.
+    /// Returns the sum of the angular speeds of both bodies, in radians per unit of time. A search uses it only for its
+    /// maximum number of steps. The default of 0 adds none.
     fn angular_speed(&self) -> f64 {
         0.0
     }
 
     /// Returns an upper bound of the gap that a plane loses if the moving body carries it from an instant to the time
-    /// `until`. The bound is small if both bodies have the same angular velocity.
+    /// `until`. The bound is small if both bodies have the same angular velocity, and infinite unless both rotate.
     fn carried_gap_loss(&self, from: &InstantOf<'a, Self>, until: f64, normal: DVec3) -> f64 {
         let _ = (from, until, normal);
         f64::INFINITY
@@ -104,7 +107,7 @@ pub(super) trait RelativeMotion<'a> {
     /// Checks whether two planes prove the time between them.
     fn proves_between(
         &self,
-        planes: [&PlaneAt; 2],
+        planes: [&TimedPlane; 2],
         ends: [&InstantOf<'a, Self>; 2],
         supports: &impl SupportSearch<Self::Body>,
     ) -> bool {
@@ -123,9 +126,9 @@ pub(super) trait RelativeMotion<'a> {
     }
 }
 
-impl<'a, B: Hull> RelativeMotion<'a> for Span<'a, B> {
+impl<'a, B: VertexHull> RelativeMotion<'a> for Span<'a, B> {
     type Body = B;
-    type Moved = [Moved; 2];
+    type Moved = [PiecePlacement; 2];
 
     fn time_range(&self) -> [f64; 2] {
         [self.from, self.to]
@@ -139,18 +142,23 @@ impl<'a, B: Hull> RelativeMotion<'a> for Span<'a, B> {
         self.min_gap
     }
 
-    fn instant_at(&self, time: f64) -> Instant<'a, [Moved; 2], B> {
+    fn instant_at(&self, time: f64) -> Instant<'a, [PiecePlacement; 2], B> {
         Span::instant_at(self, time)
     }
 
-    fn point_velocity(&self, at: &Instant<'a, [Moved; 2], B>, which: usize, point: DVec3) -> DVec3 {
+    fn point_velocity(
+        &self,
+        at: &Instant<'a, [PiecePlacement; 2], B>,
+        which: usize,
+        point: DVec3,
+    ) -> DVec3 {
         let moved = &at.moved[which];
         self.piece(which).point_velocity(moved.arm + moved.rotation * point)
     }
 
     fn curvature_bound(
         &self,
-        ends: [&Instant<'a, [Moved; 2], B>; 2],
+        ends: [&Instant<'a, [PiecePlacement; 2], B>; 2],
         normals: [DVec3; 2],
         enough: f64,
         supports: &impl SupportSearch<B>,
@@ -164,15 +172,19 @@ impl<'a, B: Hull> RelativeMotion<'a> for Span<'a, B> {
 
     fn arc_vertex_count(&self) -> usize {
         let turning = |which: usize| self.piece(which).rate != 0.0;
-        let corners = |which: usize| self.body(which).corners().len();
+        let corners = |which: usize| self.body(which).hull_vertices().len();
         (0..2).filter(|which| turning(*which)).map(corners).sum()
     }
 
-    fn gap_loss(&self, ends: [&Instant<'a, [Moved; 2], B>; 2], normal: DVec3) -> f64 {
+    fn gap_loss(&self, ends: [&Instant<'a, [PiecePlacement; 2], B>; 2], normal: DVec3) -> f64 {
         arc::gap_loss(self, ends, normal)
     }
 
-    fn radial_normal(&self, at: &Instant<'a, [Moved; 2], B>, [p, q]: [DVec3; 2]) -> Option<DVec3> {
+    fn radial_normal(
+        &self,
+        at: &Instant<'a, [PiecePlacement; 2], B>,
+        [p, q]: [DVec3; 2],
+    ) -> Option<DVec3> {
         let bodies = &at.bodies;
         let across = if self.piece(0).rate == 0.0 {
             // From the axis of the fixed body to a point of the moving one.
@@ -185,7 +197,7 @@ impl<'a, B: Hull> RelativeMotion<'a> for Span<'a, B> {
         across.try_normalize()
     }
 
-    fn normal_between_axes(&self, at: &Instant<'a, [Moved; 2], B>) -> Option<DVec3> {
+    fn normal_between_axes(&self, at: &Instant<'a, [PiecePlacement; 2], B>) -> Option<DVec3> {
         let [p, q] = [self.piece(0), self.piece(1)];
         if p.rate == 0.0 || q.rate == 0.0 {
             return None;
@@ -203,7 +215,7 @@ impl<'a, B: Hull> RelativeMotion<'a> for Span<'a, B> {
 
     fn carried_gap_loss(
         &self,
-        from: &Instant<'a, [Moved; 2], B>,
+        from: &Instant<'a, [PiecePlacement; 2], B>,
         until: f64,
         normal: DVec3,
     ) -> f64 {

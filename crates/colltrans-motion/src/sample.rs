@@ -5,14 +5,14 @@ use glam::DVec3;
 
 use super::answer::MotionSteps;
 use super::curvature::{HillClimbing, SupportSearch};
-use super::proof::Met;
+use super::proof::ContactProof;
 use super::relative_motion::{InstantOf, RelativeMotion};
 use super::span::Instant;
 use colltrans_convex::answer::{Distance, PlaneGap};
-use colltrans_convex::body::{ConvexPolyhedron, Hull};
+use colltrans_convex::body::{ConvexPolyhedron, VertexHull};
 use colltrans_convex::pair::{Pair, distance_from};
 use colltrans_convex::setting::{TwoBodies, VertexPair};
-use colltrans_convex::solve::nearest::{Difference, NearestPairs, nearly};
+use colltrans_convex::solve::nearest::{Difference, NearestPairs, nearest_points_within_share};
 
 /// Share of the size of the bodies beyond which a distance is computed roughly; and the accuracy of such a distance,
 /// relative to its part beyond that share. The exact distance is needed only near a contact.
@@ -50,7 +50,7 @@ impl<M, B> Sample<'_, M, B> {
 }
 
 /// Samples distances, and proves contacts.
-pub(super) trait Sampler<B: Hull> {
+pub(super) trait Sampler<B: VertexHull> {
     /// Proof of a contact.
     type Met;
     /// Method that finds support points.
@@ -78,7 +78,7 @@ pub(super) struct ConvexSampler {
 }
 
 impl Sampler<ConvexPolyhedron> for ConvexSampler {
-    type Met = Met;
+    type Met = ContactProof;
     type SupportSearch = HillClimbing;
     const SUPPORT_SEARCH: HillClimbing = HillClimbing;
 
@@ -89,31 +89,33 @@ impl Sampler<ConvexPolyhedron> for ConvexSampler {
         let at = motion.instant_at(time);
         let [min_gap, error] = [motion.min_gap(), motion.position_error()];
         let difference = Difference::new(&at.bodies);
-        let beyond = min_gap.max(0.0) + FAR_SHARE * difference.bodies.scale();
-        let found = nearly(&difference, &self.pairs, ROUGH_ACCURACY, beyond);
+        let beyond = min_gap.max(0.0) + FAR_SHARE * difference.bodies.size();
+        let found = nearest_points_within_share(&difference, &self.pairs, ROUGH_ACCURACY, beyond);
         self.steps.looks += 1;
         self.steps.supports += found.supports;
-        let pairs = found.pairs();
+        let pairs = found.start_pairs();
         if !pairs.is_empty() {
             self.pairs = pairs;
         }
-        let plane = found.plane(&difference).map(|plane| plane.gap);
+        let plane = found.gap_plane(&difference).map(|plane| plane.gap);
         let (plane, points) = match plane {
-            Some(plane) if plane.gap > 0.0 || min_gap >= 0.0 => (Some(plane), found.points()),
+            Some(plane) if plane.gap > 0.0 || min_gap >= 0.0 => {
+                (Some(plane), found.weighted_pairs_and_weights())
+            }
             _ if min_gap < 0.0 => self.least_overlap_plane(&difference),
-            _ => (None, found.points()),
+            _ => (None, found.weighted_pairs_and_weights()),
         };
-        let floor = 4.0 * difference.noise.point() + error + difference.bodies.input_excess();
+        let floor = 4.0 * difference.noise.point_error() + error + difference.bodies.input_excess();
         let (normal, gap) =
             plane.map_or((DVec3::X, f64::NEG_INFINITY), |plane| (plane.normal, plane.gap));
         let gap = gap - min_gap - error;
         let (pairs, weights) = &points;
-        let points = at.bodies.weighted(pairs, weights);
+        let points = at.bodies.weighted_points(pairs, weights);
         let rate = if gap > 0.0 { closing_speed(motion, &at, points, normal) } else { 0.0 };
         Sample { at, normal, gap, rate, points, floor }
     }
 
-    fn prove_contact<'a, C>(&mut self, motion: &C, time: f64) -> Option<Met>
+    fn prove_contact<'a, C>(&mut self, motion: &C, time: f64) -> Option<ContactProof>
     where
         C: RelativeMotion<'a, Body = ConvexPolyhedron>,
     {
@@ -122,11 +124,11 @@ impl Sampler<ConvexPolyhedron> for ConvexSampler {
         self.steps.looks += 1;
         if min_gap > error {
             let near = pair.distance().ok()?.near;
-            return (near.distance + error <= min_gap).then_some(Met::Near(near));
+            return (near.distance + error <= min_gap).then_some(ContactProof::Near(near));
         }
         let enough = min_proving_depth(min_gap, error);
         let depth = pair.depth_until(enough).ok()?;
-        (depth.lower > enough).then(|| Met::Deep(Box::new(depth)))
+        (depth.lower > enough).then(|| ContactProof::Deep(Box::new(depth)))
     }
 }
 

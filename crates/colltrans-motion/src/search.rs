@@ -14,7 +14,7 @@
 use glam::DVec3;
 
 use super::curvature::{ROOT_MARGIN, max_provable_curvature};
-use super::proof::PlaneAt;
+use super::proof::TimedPlane;
 use super::relative_motion::RelativeMotion;
 use super::sample::{Sample, SampleOf, Sampler};
 
@@ -22,13 +22,15 @@ use super::sample::{Sample, SampleOf, Sampler};
 const MAX_STEPS: usize = 20_000;
 const MAX_STEPS_PER_RADIAN: f64 = 200.0;
 
-/// Number of planes from which a search counts as long.
+/// Number of planes above which a search counts as long.
 const LONG_SEARCH_PLANES: usize = 500;
 
-/// Share of the step allowed by the bound that is taken.
+/// Factor of `sqrt(K / 2)` in the equation of a step. Below 1, it makes a step longer than `K` proves for the predicted
+/// gap.
 const STEP_SHARE: f64 = 0.95;
 
-/// Share of `K` by which the gap may accelerate more than sampled.
+/// Amount by which the second derivative of the gap may be below the sampled one, as a share of `K` or of the sampled
+/// closing acceleration, whichever is larger.
 const ACCELERATION_MARGIN: f64 = 0.5;
 
 /// Maximum ratio of a gap to the previous one for which the gap is assumed to close.
@@ -37,7 +39,8 @@ const DROP_RATIO: f64 = 0.1;
 /// Maximum gap, in floors, from which the next sample is taken beyond the contact.
 const NEAR_FLOORS: f64 = 1.5;
 
-/// Distance of that sample from the contact, in floor times. There a depth exceeds the error of computed places.
+/// Minimum distance of that sample from the contact, in floor times. There a depth exceeds the error of computed
+/// places.
 const OVERSHOOT_FLOOR_TIMES: f64 = 1.5;
 
 /// Maximum width, in floor times, of the interval between the last plane and a contact at which a search ends.
@@ -69,7 +72,7 @@ pub(super) enum SpanEnd<M> {
     Free,
     /// The bodies are proven to meet at this time.
     Met(f64, M),
-    /// The bodies come nearer than rounding errors can decide. A contact is not proven.
+    /// The bodies are so near that rounding errors hide whether they meet. A contact is not proven.
     Indeterminate,
     /// The search took its maximum number of steps.
     Stalled,
@@ -79,7 +82,7 @@ pub(super) enum SpanEnd<M> {
 #[derive(Debug, Clone)]
 pub(super) struct SpanResult<M> {
     /// Planes in the order of time. Empty if the bodies are not separated at the start.
-    pub(super) planes: Vec<PlaneAt>,
+    pub(super) planes: Vec<TimedPlane>,
     pub(super) end: SpanEnd<M>,
 }
 
@@ -95,7 +98,7 @@ enum Ahead {
 struct SpanSearch<'s, 'a, C: RelativeMotion<'a>, L> {
     motion: &'s C,
     sampler: &'s mut L,
-    planes: Vec<PlaneAt>,
+    planes: Vec<TimedPlane>,
     front: SampleOf<'a, C>,
     pending: Vec<SampleOf<'a, C>>,
     end_time: f64,
@@ -107,7 +110,7 @@ struct SpanSearch<'s, 'a, C: RelativeMotion<'a>, L> {
     gap_acceleration: f64,
     /// Whether the gap at the front is far smaller than that of the previous plane.
     gap_dropped: bool,
-    /// Whether the last sample before a known end had no plane either.
+    /// Whether the last sample before a possible contact at `end_time` had no plane either.
     sampled_past_end: bool,
     /// Whether a contact just beyond the front was already tested without success.
     is_contact_tested: bool,
@@ -186,7 +189,7 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
             last.alone = alone;
         }
         let Sample { normal, gap, .. } = *sample;
-        self.planes.push(PlaneAt { time: sample.time(), normal, gap, alone: false });
+        self.planes.push(TimedPlane { time: sample.time(), normal, gap, alone: false });
     }
 
     /// Moves the front to a joined plane and updates the estimates.
@@ -332,7 +335,8 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
         }
     }
 
-    /// Returns [`Self::bounded_step`], or a longer step up to which both bodies carry the plane.
+    /// Returns [`Self::bounded_step`], or a longer step that the plane of the front proves if the moving body carries
+    /// it.
     fn extended_step(&self) -> f64 {
         let (step, from) = (self.bounded_step(), self.front.time());
         let lost = self.motion.carried_gap_loss(&self.front.at, from + step, self.front.normal);
@@ -343,7 +347,8 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
         if is_longer { carried } else { step }
     }
 
-    /// Returns the step that the bound allows, limited to slightly before the predicted time of contact.
+    /// Returns the step after which `sqrt(gap) + sqrt(predicted gap)` is [`STEP_SHARE`] of the sum that `K` requires,
+    /// or a step to slightly before the predicted time of contact.
     fn bounded_step(&self) -> f64 {
         let Sample { gap, rate, .. } = self.front;
         let (root, c) = (gap.sqrt(), STEP_SHARE * (0.5 * self.curvature).sqrt());
@@ -401,8 +406,8 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
         let step = self.next_time() - from;
         let (end, remaining) = (self.end_time, self.end_time - from);
         let first = (FIRST_TRIAL_STEPS * step).min(remaining);
-        // At its present rate the gap would not suffice. If the steps are short, however, there are many of them,
-        // unless they end at a contact.
+        // At the present rate, the plane would lose too much of its gap in the first trial. The trial is still made if
+        // the steps are short, and therefore many, and the gap has not dropped, which predicts a contact.
         if rate * first >= MAX_LOSS_SHARE * gap
             && (SHORT_STEPS * step > remaining || self.gap_dropped)
         {
@@ -460,8 +465,8 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
         true
     }
 
-    /// Samples a time and moves the front there, by the normal of the front alone. Returns `false` if the plane does
-    /// not hold there.
+    /// Samples a time, up to which the normal of the front alone was proven, and moves the front there. Returns `false`
+    /// if the plane with this normal or the sampled plane has no positive gap there.
     fn move_front_by_single_plane(&mut self, time: f64) -> bool {
         let next = self.sampler.sample(self.motion, time);
         let normal = self.front.normal;

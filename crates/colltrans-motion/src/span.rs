@@ -3,9 +3,9 @@
 use derive_where::derive_where;
 use glam::DVec3;
 
-use colltrans_convex::body::{ConvexPolyhedron, Hull, Placed};
+use colltrans_convex::body::{ConvexPolyhedron, Placed, VertexHull};
 use colltrans_convex::setting::TwoBodies;
-use colltrans_kernel::motion::{Motion, Moved, Piece};
+use colltrans_kernel::motion::{Motion, Piece, PiecePlacement};
 use colltrans_kernel::noise;
 
 /// Two bodies during a span of time.
@@ -26,13 +26,13 @@ pub(super) struct Span<'a, B = ConvexPolyhedron> {
 /// Both bodies at one time, with additional data of the relative motion.
 #[derive(Debug)]
 #[derive_where(Clone, Copy; M)]
-pub(super) struct Instant<'a, M = [Moved; 2], B = ConvexPolyhedron> {
+pub(super) struct Instant<'a, M = [PiecePlacement; 2], B = ConvexPolyhedron> {
     pub(super) time: f64,
     pub(super) bodies: TwoBodies<'a, B>,
     pub(super) moved: M,
 }
 
-impl<'a, B: Hull> Span<'a, B> {
+impl<'a, B: VertexHull> Span<'a, B> {
     /// Builds the span of two bodies from the pieces of their motions.
     pub(super) fn new(
         bodies: [&'a B; 2],
@@ -40,15 +40,16 @@ impl<'a, B: Hull> Span<'a, B> {
         [from, to]: [f64; 2],
         min_gap: f64,
     ) -> Self {
-        let [moving, fixed] = [0, 1].map(|k| Placed { body: bodies[k], pose: pieces[k].start });
-        let error = |k: usize| pieces[k].error(bodies[k].reach(), to - pieces[k].since);
+        let [moving, fixed] =
+            [0, 1].map(|k| Placed { body: bodies[k], pose: pieces[k].start_pose });
+        let error = |k: usize| pieces[k].error_bound(bodies[k].reach(), to - pieces[k].start_time);
         let start = TwoBodies::new(moving, fixed);
         Self {
             start,
             pieces: pieces.map(|piece| *piece),
             from,
             to,
-            error: error(0) + error(1) + noise::FLUSHED,
+            error: error(0) + error(1) + noise::FLUSHED_POSE_COORDINATES,
             min_gap,
         }
     }
@@ -56,7 +57,7 @@ impl<'a, B: Hull> Span<'a, B> {
     /// Returns the span of two parts of these bodies, over a part of the time.
     pub(super) fn part_span<'b, C>(&self, bodies: [&'b C; 2], [from, to]: [f64; 2]) -> Span<'b, C> {
         let Self { start, pieces, error, min_gap, .. } = self;
-        let (start, pieces) = (start.holding(bodies), *pieces);
+        let (start, pieces) = (start.with_bodies(bodies), *pieces);
         Span { start, pieces, from, to, error: *error, min_gap: *min_gap }
     }
 
@@ -71,9 +72,10 @@ impl<'a, B: Hull> Span<'a, B> {
     }
 
     /// Returns both bodies at a time.
-    pub(super) fn instant_at(&self, time: f64) -> Instant<'a, [Moved; 2], B> {
-        let moved = self.pieces.map(|piece| piece.at(time));
-        let bodies = self.start.carried(moved.map(|m| m.rotation), moved.map(|m| m.by));
+    pub(super) fn instant_at(&self, time: f64) -> Instant<'a, [PiecePlacement; 2], B> {
+        let moved = self.pieces.map(|piece| piece.placement_at(time));
+        let bodies =
+            self.start.with_poses_moved(moved.map(|m| m.rotation), moved.map(|m| m.displacement));
         Instant { time, bodies, moved }
     }
 
@@ -94,13 +96,13 @@ impl<'a, B: Hull> Span<'a, B> {
 }
 
 /// Splits the time from 0 to 1 into spans, at the starts of all pieces of both motions.
-pub(super) fn split_into_spans<'a, B: Hull>(
+pub(super) fn split_into_spans<'a, B: VertexHull>(
     bodies: [&'a B; 2],
     motions: [&Motion; 2],
     min_gap: f64,
 ) -> Vec<Span<'a, B>> {
     let pieces = motions.map(Motion::pieces);
-    let mut times: Vec<f64> = pieces.into_iter().flatten().map(|piece| piece.since).collect();
+    let mut times: Vec<f64> = pieces.into_iter().flatten().map(|piece| piece.start_time).collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
     times.push(1.0);
@@ -113,5 +115,5 @@ pub(super) fn split_into_spans<'a, B: Hull>(
 
 /// Returns the piece that contains a time.
 fn piece_at(pieces: &[Piece], time: f64) -> &Piece {
-    &pieces[pieces.partition_point(|piece| piece.since <= time).max(1) - 1]
+    &pieces[pieces.partition_point(|piece| piece.start_time <= time).max(1) - 1]
 }

@@ -1,12 +1,13 @@
 //! Checks proofs about motions without a search, over all vertices.
 //!
 //! - Planes are in the order of time, from the start of their span on.
-//! - Each plane has its gap, minus the error of computed poses, and is joined to the next one.
+//! - The claimed gap of each plane is at most the computed one minus the error of computed poses. Each plane is joined
+//!   to the next one.
 //! - A contact is checked at its time, with the same margin for errors.
 
 use super::MotionCast;
 use super::curvature::VertexScan;
-use super::proof::{Meeting, Met, MotionProof, PlaneAt};
+use super::proof::{ContactProof, MotionProof, ProvenContact, TimedPlane};
 use super::relative_motion::{InstantOf, RelativeMotion};
 use super::sample::min_proving_depth;
 use super::span::split_into_spans;
@@ -54,16 +55,17 @@ pub enum MotionProofError {
     },
     /// The proof has a different tolerance than the query.
     #[error(
-        "the proof has the tolerance {claimed}, the query {asked}; verify it with the tolerance of \
+        "the proof has the tolerance {claimed}, the query {requested}; verify it with the tolerance of \
          the proof"
     )]
     Tolerance {
         /// Tolerance of the proof.
         claimed: f64,
         /// Tolerance of the query.
-        asked: f64,
+        requested: f64,
     },
-    /// The state of the solids at the start of the motion is not proven.
+    /// The state of the solids at the start of the motion is not proven, or a proof about solids has other entries or
+    /// does not fit the query.
     #[error("the proof does not show whether the solids overlap at the start of the motion")]
     Start,
     /// An entry of a cover does not hold.
@@ -94,7 +96,7 @@ fn reason_suffix(reason: Option<&CertificateError>) -> String {
 pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2], MotionProofError> {
     if let Some(solids) = &proof.solids {
         let plain = proof.spans.is_empty() && proof.meeting.is_none();
-        let solid_cast = cast.between_solids().ok().filter(|_| plain && cast.min_gap >= 0.0);
+        let solid_cast = cast.as_solid_cast().ok().filter(|_| plain && cast.min_gap >= 0.0);
         let [reached, meeting] = solid_cast.ok_or(MotionProofError::Start)?.verify(solids)?;
         return Ok([reached, cast.upper_bound_from_solids(meeting)]);
     }
@@ -116,7 +118,9 @@ pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2],
     if proof.spans.len() > count {
         return Err(MotionProofError::Plane { span: count, index: 0 });
     }
-    let Some(Meeting { time, met }) = &proof.meeting else { return Ok([reached, f64::INFINITY]) };
+    let Some(ProvenContact { time, met }) = &proof.meeting else {
+        return Ok([reached, f64::INFINITY]);
+    };
     let span = last.filter(|span| (span.from..=span.to).contains(time) && *time >= reached);
     let span = span.ok_or(MotionProofError::Meeting { time: *time, reason: None })?;
     check_contact(&span, *time, met)?;
@@ -146,12 +150,12 @@ impl PlaneListError {
 /// Checks that each plane of a list has its gap and is joined to the next one.
 pub(super) fn check_planes<'a, C: RelativeMotion<'a>>(
     motion: &C,
-    planes: &[PlaneAt],
+    planes: &[TimedPlane],
 ) -> Result<(), PlaneListError> {
     let to = motion.time_range()[1];
-    let mut before: Option<(&PlaneAt, InstantOf<C>)> = None;
+    let mut before: Option<(&TimedPlane, InstantOf<C>)> = None;
     for (index, plane) in planes.iter().enumerate() {
-        let PlaneAt { time, normal, gap, .. } = *plane;
+        let TimedPlane { time, normal, gap, .. } = *plane;
         let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
         let is_later = before.is_none_or(|(last, _)| last.time <= time) && time <= to;
         if !is_unit || !is_later {
@@ -176,7 +180,7 @@ pub(super) fn check_planes<'a, C: RelativeMotion<'a>>(
 fn check_contact<'a, C: RelativeMotion<'a, Body = ConvexPolyhedron>>(
     motion: &C,
     time: f64,
-    met: &Met,
+    met: &ContactProof,
 ) -> Result<(), MotionProofError> {
     let fails = |reason| MotionProofError::Meeting { time, reason };
     let proves_contact = proves_contact(motion, time, met).map_err(|reason| fails(Some(reason)))?;
@@ -187,16 +191,16 @@ fn check_contact<'a, C: RelativeMotion<'a, Body = ConvexPolyhedron>>(
 pub(super) fn proves_contact<'a, C: RelativeMotion<'a, Body = ConvexPolyhedron>>(
     motion: &C,
     time: f64,
-    met: &Met,
+    met: &ContactProof,
 ) -> Result<bool, CertificateError> {
     let pair = Pair { bodies: motion.instant_at(time).bodies };
     let [min_gap, error] = [motion.min_gap(), motion.position_error()];
     Ok(match met {
-        Met::Deep(depth) => {
+        ContactProof::Deep(depth) => {
             pair.verify(&**depth)?;
             depth.lower > min_proving_depth(min_gap, error)
         }
-        Met::Near(near) => {
+        ContactProof::Near(near) => {
             pair.verify(near)?;
             near.distance + error <= min_gap
         }

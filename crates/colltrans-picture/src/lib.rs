@@ -14,8 +14,8 @@ mod view;
 
 pub use edges::{Edge, edges};
 pub use grid::Depth;
-pub use order::{Facet, ordered};
-pub use page::{Frame, Page, Stroke, escaped};
-pub use paint::{FIXED, FIXED_MARK, MOVING, MOVING_MARK, Paint, SHADES, SMOOTH};
+pub use order::{Facet, sort_back_to_front};
+pub use page::{Frame, Page, Stroke, escape_xml};
+pub use paint::{FIXED, FIXED_MARK, MOVING, MOVING_MARK, Paint, SHADES, SMOOTH_COSINE};
 pub use raster::Raster;
 pub use view::View;

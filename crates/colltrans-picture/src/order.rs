@@ -34,7 +34,12 @@ const MAX_POINTS: f64 = 1e4;
 
 /// Sorts facets back to front. The window begins at (0, 0); facets that are not visible in it are removed.
 /// Differences of depth up to the length `slack` are ignored.
-pub fn ordered(mut facets: Vec<Facet>, window: Frame, depth: Depth, slack: f64) -> Vec<Facet> {
+pub fn sort_back_to_front(
+    mut facets: Vec<Facet>,
+    window: Frame,
+    depth: Depth,
+    slack: f64,
+) -> Vec<Facet> {
     let grid = Grid::new(window, 1);
     facets.retain(|facet| facet.corners.iter().all(|corner| corner.is_finite()));
     let mut rules = PaintRules::new(&facets, &grid, depth, slack);
@@ -368,7 +373,7 @@ mod tests {
     }
 
     fn sorted_facets(facets: &[Facet]) -> Vec<Facet> {
-        ordered(facets.to_vec(), WINDOW, Depth::Inverse, 1e-9)
+        sort_back_to_front(facets.to_vec(), WINDOW, Depth::Inverse, 1e-9)
     }
 
     /// Returns a square of two triangles.
@@ -516,7 +521,7 @@ mod tests {
         assert!(sorted_facets(&[]).is_empty());
         let nowhere = Frame { low: DVec2::ZERO, high: DVec2::ZERO };
         let facets = square_facets(1.0, 0, true, [5.0, 5.0, 20.0]).to_vec();
-        assert!(ordered(facets, nowhere, Depth::Inverse, 0.0).is_empty());
+        assert!(sort_back_to_front(facets, nowhere, Depth::Inverse, 0.0).is_empty());
     }
 
     /// Triangles thinner than samples are visible by their longest sides.

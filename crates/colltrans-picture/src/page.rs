@@ -223,7 +223,7 @@ impl Page {
     /// Writes text at a baseline. The `anchor` is `start`, `middle` or `end`.
     pub fn text(&mut self, at: DVec2, anchor: &str, look: &str, text: &str) {
         let (x, y) = (format_coordinate(at.x), format_coordinate(at.y));
-        let text = escaped(text);
+        let text = escape_xml(text);
         let _ = writeln!(
             self.body,
             r#"<text x="{x}" y="{y}" text-anchor="{anchor}" {look}>{text}</text>"#
@@ -245,17 +245,17 @@ impl Page {
 
     /// Returns a picture to embed in a web page, as wide as its container. The `label` is its alternative text.
     pub fn inline(self, size: DVec2, label: &str) -> String {
-        let told = format!(r#" role="img" aria-label="{}""#, escaped(label));
+        let told = format!(r#" role="img" aria-label="{}""#, escape_xml(label));
         self.with_background(&told, size, "#ffffff")
     }
 
     /// Returns a separate picture with a background of this colour.
-    pub fn alone(self, size: DVec2, ground: &str) -> String {
+    pub fn standalone(self, size: DVec2, ground: &str) -> String {
         let DVec2 { x: width, y: height } = size;
         self.with_background(
             &format!(r#" width="{width}" height="{height}""#),
             size,
-            &escaped(ground),
+            &escape_xml(ground),
         )
     }
 
@@ -282,7 +282,7 @@ impl Page {
             text,
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="Helvetica, Arial, 'Liberation Sans', sans-serif" stroke-linecap="round" stroke-linejoin="round">"#
         );
-        let _ = writeln!(text, "<title>{}</title>", escaped(title));
+        let _ = writeln!(text, "<title>{}</title>", escape_xml(title));
         let mut clip = Self::new(window);
         clip.rectangle("", window);
         let _ = writeln!(text, "<defs><clipPath id=\"window\">{}</clipPath></defs>", clip.body);
@@ -295,7 +295,7 @@ impl Page {
 
 /// Escapes a text for elements and attributes of HTML and XML. Characters that XML cannot represent (XML 1.0,
 /// 2.2, *Char*), for example control codes, are replaced by U+FFFD.
-pub fn escaped(text: &str) -> String {
+pub fn escape_xml(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -338,7 +338,7 @@ mod tests {
     #[test]
     fn hostile_text_is_escaped() {
         let hostile = "</text><script>\"'&\u{1b}[31m\0";
-        let text = escaped(hostile);
+        let text = escape_xml(hostile);
         assert_eq!(text, "&lt;/text&gt;&lt;script&gt;&quot;'&amp;\u{fffd}[31m\u{fffd}");
     }
 

@@ -36,7 +36,7 @@ pub const FIXED_MARK: &str = "#c2600f";
 /// Number of shades. Neighbouring faces of dense meshes have the same shade and share a path.
 pub const SHADES: usize = 40;
 /// Minimum cosine of the angle at edges of smooth surfaces (25 degrees).
-pub const SMOOTH: f64 = 0.906;
+pub const SMOOTH_COSINE: f64 = 0.906;
 
 impl Paint {
     /// Returns the colour of a shade, from 0 (dark) to [`SHADES`] (light).

@@ -141,7 +141,7 @@ impl Raster {
 
     /// Removes the samples that are behind another raster of the same window. Its surfaces hide later shapes as
     /// well.
-    pub fn keep_before(&mut self, other: &Self) {
+    pub fn keep_in_front_of(&mut self, other: &Self) {
         for (cell, &covered) in other.depths.iter().enumerate() {
             if self.depths[cell] < covered {
                 (self.depths[cell], self.tones[cell]) = (covered, EMPTY);

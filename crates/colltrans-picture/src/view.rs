@@ -27,7 +27,7 @@ impl View {
     }
 
     /// Builds a view from a direction towards the viewer and the upward direction, which must not be parallel.
-    pub fn upright(toward: DVec3, up: DVec3) -> Self {
+    pub fn looking_along(toward: DVec3, up: DVec3) -> Self {
         let toward = toward.normalize();
         let right = up.cross(toward).normalize();
         Self { right, up: toward.cross(right), toward }

@@ -26,7 +26,7 @@ use colltrans_convex::cast::Cast;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::solve::observe::{NoObserver, Observer};
-use colltrans_kernel::written::named;
+use colltrans_kernel::serialization::named;
 use colltrans_solid::SolidPair;
 use colltrans_solid::body::Solid;
 use colltrans_solid::pair::OverlapDepth;
@@ -149,7 +149,7 @@ record! {
 
 impl Dents {
     /// Collects the dents of both bodies. Returns `None` if neither body has one.
-    pub fn of([moving, fixed]: [Option<f64>; 2]) -> Option<Self> {
+    pub fn from_depths([moving, fixed]: [Option<f64>; 2]) -> Option<Self> {
         (moving.is_some() || fixed.is_some()).then_some(Self { moving, fixed })
     }
 }
@@ -160,13 +160,16 @@ impl Dents {
 pub enum Ending {
     /// The bodies meet along the direction.
     Contact,
-    /// The shadows overlap by no more than the graze tolerance.
+    /// The shadows overlap by no more than the graze tolerance. For a motion or a path: the bodies come
+    /// nearer than rounding errors can decide.
     Grazing,
     /// The bodies never meet.
     Separated,
-    /// Nothing blocks a solid.
+    /// Nothing blocks a solid. For a motion or a path: no bodies meet. For free directions: some directions
+    /// are free.
     Free,
-    /// A body is blocked after a finite distance.
+    /// A body is blocked after a finite distance. For free directions: it is proven that no direction is
+    /// free.
     Blocked,
     /// Nothing blocks a convex body, because it slides along the other one.
     Slides,
@@ -185,7 +188,8 @@ pub enum Ending {
     /// The distance is larger than the given length.
     Farther,
     /// The given length lies between the bounds of the distance. For a motion or a path: the search took its
-    /// maximum number of steps.
+    /// maximum number of steps. For free directions: no free direction was found, and some directions are
+    /// undecided.
     Undecided,
     /// The query has no answer.
     #[default]
@@ -243,8 +247,8 @@ impl FeaturesRecord {
     /// Converts the features of two bodies.
     pub(crate) fn of_bodies<B: Body>(features: Features, [moving, fixed]: [&B; 2]) -> Self {
         Self {
-            moving: FeatureRecord::of(features.moving, moving),
-            fixed: FeatureRecord::of(features.fixed, fixed),
+            moving: FeatureRecord::from_feature(features.moving, moving),
+            fixed: FeatureRecord::from_feature(features.fixed, fixed),
         }
     }
 }
@@ -258,8 +262,7 @@ pub struct FeatureRecord {
     pub vertices: Vec<InputVertex>,
 }
 
-/// Query about two convex bodies and a direction. Its name is used by the command line, batches and the page.
-/// Queries about solids compute their clearance.
+/// Query about two convex bodies and a direction. Its names are `contact` and `clearance`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Question {
@@ -336,8 +339,8 @@ impl Question {
     ///
     /// # Errors
     /// Returns the errors of the query's method.
-    pub fn ask(self, cast: &Cast) -> Result<Answer, QueryError> {
-        self.ask_observed(cast, &mut NoObserver)
+    pub fn answer(self, cast: &Cast) -> Result<Answer, QueryError> {
+        self.answer_observed(cast, &mut NoObserver)
     }
 
     /// Computes the answer for a cast and reports events to an observer, like
@@ -345,7 +348,7 @@ impl Question {
     ///
     /// # Errors
     /// Returns the errors of the query's method.
-    pub fn ask_observed<O: Observer>(
+    pub fn answer_observed<O: Observer>(
         self,
         cast: &Cast,
         observer: &mut O,
@@ -362,7 +365,7 @@ impl Answer {
     pub fn record(&self, cast: &Cast) -> Record {
         match self {
             Self::Contact(range) => CastRecord::of_range(range, cast).into(),
-            Self::Clearance(clearance) => ClearanceRecord::of(clearance, cast).into(),
+            Self::Clearance(clearance) => ClearanceRecord::from_clearance(clearance, cast).into(),
         }
     }
 
@@ -381,7 +384,7 @@ impl PairQuestion {
     ///
     /// # Errors
     /// Returns the errors of the query's method.
-    pub fn ask(self, pair: &Pair) -> Result<PairAnswer, QueryError> {
+    pub fn answer(self, pair: &Pair) -> Result<PairAnswer, QueryError> {
         Ok(match self {
             Self::Distance => PairAnswer::Distance(pair.distance()?),
             Self::Depth => PairAnswer::Depth(pair.depth()?),
@@ -393,7 +396,7 @@ impl PairQuestion {
     ///
     /// # Errors
     /// Returns the errors of the query's method.
-    pub fn ask_solids(self, pair: &Pair<'_, Solid>) -> Result<PairAnswer<Solid>, QueryError> {
+    pub fn answer_solids(self, pair: &Pair<'_, Solid>) -> Result<PairAnswer<Solid>, QueryError> {
         Ok(match self {
             Self::Distance => PairAnswer::Distance(pair.distance()?),
             Self::Depth => PairAnswer::OverlapDepth(pair.overlap_depth()?),
@@ -438,8 +441,8 @@ impl PairAnswer {
     /// Converts the answer to a record. `pair` must be the pair of the query.
     pub fn record(&self, pair: &Pair) -> Record {
         match self {
-            Self::Distance(distance) => DistanceRecord::of(distance, pair).into(),
-            Self::Depth(depth) => DepthRecord::of(depth).into(),
+            Self::Distance(distance) => DistanceRecord::from_distance(distance, pair).into(),
+            Self::Depth(depth) => DepthRecord::from_depth(depth).into(),
             Self::OverlapDepth(depth) => DepthRecord::of_overlap(*depth, Vec::new()).into(),
             Self::Within { answer, steps } => {
                 DistanceRecord::of_within(answer, *steps, pair).into()
@@ -469,7 +472,7 @@ impl PairAnswer<Solid> {
         let surfaces = open_bodies(pair.moving(), pair.fixed());
         Ok(match self {
             Self::Distance(distance) => DistanceRecord::of_solids(distance, pair).into(),
-            Self::Depth(depth) => DepthRecord { surfaces, ..DepthRecord::of(depth) }.into(),
+            Self::Depth(depth) => DepthRecord { surfaces, ..DepthRecord::from_depth(depth) }.into(),
             Self::OverlapDepth(depth) => DepthRecord::of_overlap(*depth, surfaces).into(),
             Self::Within { answer, .. } => DistanceRecord::of_solids_within(answer, pair)?.into(),
         })
@@ -534,7 +537,7 @@ records!(
 
 impl FeatureRecord {
     /// Converts a feature of a body.
-    pub fn of<B: Body>(feature: Feature, body: &B) -> Self {
+    pub fn from_feature<B: Body>(feature: Feature, body: &B) -> Self {
         Self { kind: feature.kind(), vertices: feature.vertices(body) }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use colltrans::free::{FreeError, FreeOptions, FreeProof, Verdict};
+use colltrans::removal::directions::{FreeError, FreeOptions, FreeProof, Verdict};
 use colltrans::glam::DVec3;
 use colltrans::record::FreeRecord;
 use colltrans::solid::SolidCast as _;
@@ -60,11 +60,11 @@ impl FreeDirections {
     fn each<T>(
         &self,
         directions: &Bound<'_, PyAny>,
-        ask: impl Fn(&colltrans::free::FreeDirections<'_>, DVec3) -> Result<T, QueryError>,
+        ask: impl Fn(&colltrans::removal::directions::FreeDirections<'_>, DVec3) -> Result<T, QueryError>,
     ) -> PyResult<Vec<T>> {
         let directions = points(directions, "directions")?;
         let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
-        let free = colltrans::free::FreeDirections::believing(&moving, &fixed, &self.proof);
+        let free = colltrans::removal::directions::FreeDirections::believing(&moving, &fixed, &self.proof);
         let free = free.map_err(free_error)?;
         directions.into_iter().map(|d| ask(&free, d).or_raise()).collect()
     }
@@ -84,7 +84,7 @@ impl Question {
     fn answer(self) -> PyResult<FreeDirections> {
         let asked = self.settled()?;
         let [moving, fixed] = place_bodies(&asked.bodies, &asked.poses)?;
-        let free = colltrans::free::FreeDirections::of(&moving, &fixed, asked.options);
+        let free = colltrans::removal::directions::FreeDirections::of(&moving, &fixed, asked.options);
         let free = free.map_err(free_error)?;
         let (proof, record) = (free.proof(), FreeRecord::of(&free, |_| [None, None]));
         let Self { bodies, poses, options } = asked;
@@ -136,7 +136,7 @@ impl FreeDirections {
         py.detach(|| {
             let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
             let proof = &self.proof;
-            let free = colltrans::free::FreeDirections::believing(&moving, &fixed, proof);
+            let free = colltrans::removal::directions::FreeDirections::believing(&moving, &fixed, proof);
             let free = free.map_err(free_error)?;
             let word = |d: DVec3| {
                 Ok(match free.says(d).or_raise()? {
@@ -196,7 +196,7 @@ impl FreeDirections {
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| {
             let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
-            let checked = colltrans::free::FreeDirections::from_proof(&moving, &fixed, &self.proof);
+            let checked = colltrans::removal::directions::FreeDirections::from_proof(&moving, &fixed, &self.proof);
             checked.map(|_| ()).map_err(free_error)
         })
     }
@@ -221,7 +221,7 @@ impl FreeDirections {
     fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
         py.detach(|| {
             let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
-            let free = colltrans::free::FreeDirections::believing(&moving, &fixed, &self.proof);
+            let free = colltrans::removal::directions::FreeDirections::believing(&moving, &fixed, &self.proof);
             let free = free.map_err(free_error)?.with_options(self.options);
             let pieces = [self.bodies[0].pieces().or_raise()?, self.bodies[1].pieces().or_raise()?];
             let file = ProofFile::of_free_directions(&free, [&pieces[0], &pieces[1]]);

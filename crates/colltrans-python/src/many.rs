@@ -158,15 +158,15 @@ fn answer_moving(
     question: Question,
     bodies: [AnyBody<'_>; 2],
     motions: [&Motion; 2],
-    keep: f64,
+    min_gap: f64,
     tolerance: Option<f64>,
 ) -> Result<Row, String> {
     let clears = matches!(question, Question::MotionClearance);
     let record = if let [AnyBody::Convex(p), AnyBody::Convex(q)] = bodies {
-        if tolerance.is_some() && keep != 0.0 {
+        if tolerance.is_some() && min_gap != 0.0 {
             return Err(EITHER.into());
         }
-        convex_cast([p, q], motions, keep, tolerance).and_then(|cast| {
+        convex_cast([p, q], motions, min_gap, tolerance).and_then(|cast| {
             Ok(if clears {
                 MotionRecord::of_clearance(&cast.clearance()?, &cast)
             } else {
@@ -176,7 +176,7 @@ fn answer_moving(
     } else {
         let solids = [bodies[0].solid()?, bodies[1].solid()?];
         let precisions = bodies.map(AnyBody::precision);
-        solid_cast(solids, motions, precisions, keep, tolerance).and_then(|cast| {
+        solid_cast(solids, motions, precisions, min_gap, tolerance).and_then(|cast| {
             Ok(if clears {
                 MotionRecord::of_solid_clearance(&cast.clearance()?, &cast)
             } else {
@@ -234,7 +234,7 @@ pub(crate) fn ask_many<'py>(
         Question::Contact | Question::Range | Question::Clearance => RowQuery::Direction {
             directions: table("direction")?,
             graze_tolerances: table("graze_tolerance")?,
-            keeps: table("keep")?,
+            keeps: table("min_gap")?,
             options: options_of(Some(solver))?,
         },
         Question::Within => RowQuery::Length(table("length")?),
@@ -244,7 +244,7 @@ pub(crate) fn ask_many<'py>(
                 read_motions("moving_motion", &tables, n)?,
                 read_motions("fixed_motion", &tables, n)?,
             ],
-            keeps: table("keep")?,
+            keeps: table("min_gap")?,
             tolerances: table("tolerance")?,
         },
     };
@@ -309,7 +309,7 @@ fn read_numbers<'a>(name: &'static str, of: &'a Arguments<'_>, n: usize) -> PyRe
     let (rows, width) = (numbers.shape()[0], numbers.shape()[1]);
     let widths: &[usize] = match name {
         "direction" => &[3],
-        "graze_tolerance" | "keep" | "length" | "tolerance" => &[1],
+        "graze_tolerance" | "min_gap" | "length" | "tolerance" => &[1],
         "moving_motion" | "fixed_motion" => &[3, 8, 9],
         _ => &[3, 7, 12, 16],
     };

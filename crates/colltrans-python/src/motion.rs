@@ -323,7 +323,7 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
 pub(crate) struct MotionCast {
     bodies: [Piece; 2],
     motions: [motion::Motion; 2],
-    keep: f64,
+    min_gap: f64,
     tolerance: Option<f64>,
     start_overlap: StartOverlap,
 }
@@ -343,7 +343,7 @@ impl MotionCast {
     pub(crate) fn from_arguments(
         bodies: [&Bound<'_, PyAny>; 2],
         motions: [Option<&Bound<'_, PyAny>>; 2],
-        keep: f64,
+        min_gap: f64,
         tolerance: Option<f64>,
         ignore_start_overlaps: bool,
     ) -> PyResult<Self> {
@@ -358,7 +358,7 @@ impl MotionCast {
                 motion_of(motions[0], "moving_motion")?,
                 motion_of(motions[1], "fixed_motion")?,
             ],
-            keep,
+            min_gap,
             tolerance,
             start_overlap,
         })
@@ -369,13 +369,13 @@ impl MotionCast {
         let [a, b] = &self.motions;
         if let [Piece::Convex(p), Piece::Convex(q)] = &self.bodies {
             let (p, q): (&ConvexPolyhedron, &ConvexPolyhedron) = (&p.get().0, &q.get().0);
-            return convex_cast([p, q], [a, b], self.keep, self.tolerance)
+            return convex_cast([p, q], [a, b], self.min_gap, self.tolerance)
                 .or_raise()
                 .map(Of::Convex);
         }
         let [p, q] = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
         let precisions = [0, 1].map(|i| self.bodies[i].precision());
-        let cast = solid_cast([p, q], [a, b], precisions, self.keep, self.tolerance).or_raise()?;
+        let cast = solid_cast([p, q], [a, b], precisions, self.min_gap, self.tolerance).or_raise()?;
         Ok(Of::Solids(cast.with_start_overlap(self.start_overlap)))
     }
 
@@ -417,14 +417,14 @@ pub(crate) const EITHER: &str =
 pub(crate) fn convex_cast<'a>(
     [p, q]: [&'a ConvexPolyhedron; 2],
     [a, b]: [&'a motion::Motion; 2],
-    keep: f64,
+    min_gap: f64,
     tolerance: Option<f64>,
 ) -> Result<motion::MotionCast<'a>, QueryError> {
     let cast = motion::MotionCast::new(p.along(a), q.along(b))?;
     match tolerance {
         // Both calls run: the first one rejects an invalid gap, the second one replaces the gap by the depth.
-        Some(depth) => cast.keeping(keep)?.tolerating(depth),
-        None => cast.keeping(keep),
+        Some(depth) => cast.keeping(min_gap)?.tolerating(depth),
+        None => cast.keeping(min_gap),
     }
 }
 
@@ -433,10 +433,10 @@ pub(crate) fn solid_cast<'a>(
     [p, q]: [&'a Solid; 2],
     [a, b]: [&'a motion::Motion; 2],
     precisions: [f64; 2],
-    keep: f64,
+    min_gap: f64,
     tolerance: Option<f64>,
 ) -> Result<motion::MotionCast<'a, Solid>, QueryError> {
-    between_motions(p.along(a), q.along(b), precisions, tolerance)?.keeping(keep)
+    between_motions(p.along(a), q.along(b), precisions, tolerance)?.keeping(min_gap)
 }
 
 getters!(MotionCast, |it| {
@@ -449,7 +449,7 @@ getters!(MotionCast, |it| {
     /// Motion: The motion of the fixed body.
     fixed_motion: Motion = Motion(it.motions[1].clone());
     /// float: The minimum gap; 0 if there is none.
-    keep: f64 = it.keep;
+    min_gap: f64 = it.min_gap;
     /// float: The tolerated depth; for solids the tolerance that is used.
     tolerance: PyResult<f64> = Ok(match it.asked()? {
         Of::Convex(cast) => cast.tolerance(),
@@ -462,22 +462,22 @@ getters!(MotionCast, |it| {
 #[pymethods]
 impl MotionCast {
     #[new]
-    #[pyo3(signature = (moving, fixed, *, moving_motion=None, fixed_motion=None, keep=0.0,
+    #[pyo3(signature = (moving, fixed, *, moving_motion=None, fixed_motion=None, min_gap=0.0,
         tolerance=None, ignore_start_overlaps=false))]
     fn new(
         moving: &Bound<'_, PyAny>,
         fixed: &Bound<'_, PyAny>,
         moving_motion: Option<&Bound<'_, PyAny>>,
         fixed_motion: Option<&Bound<'_, PyAny>>,
-        keep: f64,
+        min_gap: f64,
         tolerance: Option<f64>,
         ignore_start_overlaps: bool,
     ) -> PyResult<Self> {
         let motions = [moving_motion, fixed_motion];
         let query =
-            Self::from_arguments([moving, fixed], motions, keep, tolerance, ignore_start_overlaps)?;
+            Self::from_arguments([moving, fixed], motions, min_gap, tolerance, ignore_start_overlaps)?;
         if let [Piece::Convex(_), Piece::Convex(_)] = query.bodies {
-            if tolerance.is_some() && keep != 0.0 {
+            if tolerance.is_some() && min_gap != 0.0 {
                 return Err(error("QueryError", EITHER));
             }
             if ignore_start_overlaps {
@@ -521,7 +521,7 @@ impl MotionCast {
         Ok(Self {
             bodies: [piece(p)?, piece(q)?],
             motions: [a.clone(), b.clone()],
-            keep: cast.keep(),
+            min_gap: cast.keep(),
             tolerance: Some(cast.tolerance()).filter(|depth| *depth > 0.0),
             start_overlap: StartOverlap::Refuse,
         })
@@ -542,7 +542,7 @@ impl MotionCast {
         let named = PyDict::new(py);
         named.set_item("moving_motion", self.moving_motion())?;
         named.set_item("fixed_motion", self.fixed_motion())?;
-        named.set_item("keep", self.keep)?;
+        named.set_item("min_gap", self.min_gap)?;
         named.set_item("tolerance", self.tolerance)?;
         named.set_item("ignore_start_overlaps", self.ignore_start_overlaps())?;
         Ok(((self.moving(py), self.fixed(py)), named))
@@ -736,7 +736,7 @@ type Cleared = Of<motion::MotionClearance, motion::MotionClearance<()>>;
 ///
 /// The ``outcome`` is one of:
 ///
-/// - ``"blocked"``: the body can move until ``time`` at least, which is 0 if it is pushed in at once;
+/// - ``"blocked"``: the body can safely move until ``time``, which is 0 if it is blocked at the start;
 /// - ``"free"``: the body can move to the end;
 /// - ``"overlapping"``: at the start of the motion the bodies overlap by more than the tolerance.
 #[pyclass(frozen, module = "colltrans")]
@@ -923,18 +923,18 @@ impl Answer for Cleared {
 /// >>> found.lower <= 0.375 <= found.upper, found.normal
 /// (True, array([1., 0., 0.]))
 #[pyfunction]
-#[pyo3(signature = (moving, fixed, moving_motion, fixed_motion=None, *, keep=0.0, tolerance=None))]
+#[pyo3(signature = (moving, fixed, moving_motion, fixed_motion=None, *, min_gap=0.0, tolerance=None))]
 pub(crate) fn first_contact(
     py: Python<'_>,
     moving: &Bound<'_, PyAny>,
     fixed: &Bound<'_, PyAny>,
     moving_motion: &Bound<'_, PyAny>,
     fixed_motion: Option<&Bound<'_, PyAny>>,
-    keep: f64,
+    min_gap: f64,
     tolerance: Option<f64>,
 ) -> PyResult<FirstContact> {
     let motions = [Some(moving_motion), fixed_motion];
-    let query = MotionCast::new(moving, fixed, motions[0], motions[1], keep, tolerance, false)?;
+    let query = MotionCast::new(moving, fixed, motions[0], motions[1], min_gap, tolerance, false)?;
     MotionCast::first_contact(&Bound::new(py, query)?)
 }
 
@@ -962,7 +962,7 @@ pub(crate) fn first_contact(
 /// >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [1, 0, 0], radians=2))
 /// MotionClearance("blocked", time=0.0)
 #[pyfunction]
-#[pyo3(signature = (moving, fixed, moving_motion, fixed_motion=None, *, keep=0.0, tolerance=None,
+#[pyo3(signature = (moving, fixed, moving_motion, fixed_motion=None, *, min_gap=0.0, tolerance=None,
     ignore_start_overlaps=false))]
 #[expect(clippy::too_many_arguments, reason = "they are keywords")]
 pub(crate) fn motion_clearance(
@@ -971,7 +971,7 @@ pub(crate) fn motion_clearance(
     fixed: &Bound<'_, PyAny>,
     moving_motion: &Bound<'_, PyAny>,
     fixed_motion: Option<&Bound<'_, PyAny>>,
-    keep: f64,
+    min_gap: f64,
     tolerance: Option<f64>,
     ignore_start_overlaps: bool,
 ) -> PyResult<MotionClearance> {
@@ -980,7 +980,7 @@ pub(crate) fn motion_clearance(
         fixed,
         Some(moving_motion),
         fixed_motion,
-        keep,
+        min_gap,
         tolerance,
         ignore_start_overlaps,
     )?;

@@ -102,9 +102,9 @@ fn clearance_keeping(
     among: &Among<'_>,
     direction: DVec3,
     before: f64,
-    keep: f64,
+    min_gap: f64,
 ) -> Result<ClearanceAmong, QueryError> {
-    with_min_gap(among, keep)?.clearance_before(direction, before)
+    with_min_gap(among, min_gap)?.clearance_before(direction, before)
 }
 
 fn lock<T>(of: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
@@ -327,9 +327,9 @@ impl Obstacles {
     /// Returns
     /// -------
     /// ObstacleClearance
-    #[pyo3(signature = (body, direction, pose=None, *, before=None, keep=0.0,
+    #[pyo3(signature = (body, direction, pose=None, *, before=None, min_gap=0.0,
         ignore=HashSet::new()), text_signature = "($self, body, direction, pose=None, *, \
-        before=None, keep=0.0, ignore=())")]
+        before=None, min_gap=0.0, ignore=())")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn clearance(
         &self,
@@ -338,15 +338,15 @@ impl Obstacles {
         direction: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
         before: Option<f64>,
-        keep: f64,
+        min_gap: f64,
         #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
     ) -> PyResult<ObstacleClearance> {
         let (body, at) = (Piece::from_python(body, "body")?, self::pose(pose, "pose")?);
         let direction = vector(direction, "direction")?;
         let before = before.unwrap_or(f64::INFINITY);
-        let ask = |among: &Among<'_>| clearance_keeping(among, direction, before, keep);
+        let ask = |among: &Among<'_>| clearance_keeping(among, direction, before, min_gap);
         let (found, asked) = self.ask(py, (body, at), ignore, ask)?;
-        Ok(ObstacleClearance { found, direction, keep, asked })
+        Ok(ObstacleClearance { found, direction, min_gap, asked })
     }
 
     /// Runs :meth:`nearest` for many poses, on several threads.
@@ -410,9 +410,9 @@ impl Obstacles {
     /// dict of ndarray
     ///     Columns ``outcome`` (0 is blocked, 1 free, 2 overlapping), ``obstacle`` (-1 if nothing stops the
     ///     body), ``distance`` (NaN for an overlap) and ``upper``.
-    #[pyo3(signature = (body, directions, poses, *, before=None, keep=0.0,
+    #[pyo3(signature = (body, directions, poses, *, before=None, min_gap=0.0,
         ignore=HashSet::new(), threads=None), text_signature = "($self, body, directions, poses, \
-        *, before=None, keep=0.0, ignore=(), threads=None)")]
+        *, before=None, min_gap=0.0, ignore=(), threads=None)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn clearance_many<'py>(
         &self,
@@ -421,7 +421,7 @@ impl Obstacles {
         directions: &Bound<'py, PyAny>,
         poses: &Bound<'py, PyAny>,
         before: Option<f64>,
-        keep: f64,
+        min_gap: f64,
         #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyDict>> {
@@ -435,7 +435,7 @@ impl Obstacles {
         }
         let before = before.unwrap_or(f64::INFINITY);
         let ask = |k: usize, among: &Among<'_>| {
-            clearance_keeping(among, directions[k.min(directions.len() - 1)], before, keep)
+            clearance_keeping(among, directions[k.min(directions.len() - 1)], before, min_gap)
         };
         let found = self.ask_rows(py, (&body, &poses), &ignore, threads, ask)?;
         let kind = |one: &ClearanceAmong| match outcome_of(one) {

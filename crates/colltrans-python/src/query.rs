@@ -23,7 +23,7 @@ pub(crate) struct Arguments<'a, 'py> {
     pub(crate) direction: &'a Bound<'py, PyAny>,
     pub(crate) poses: [Option<&'a Bound<'py, PyAny>>; 2],
     pub(crate) graze_tolerance: f64,
-    pub(crate) keep: f64,
+    pub(crate) min_gap: f64,
     pub(crate) solver: Option<&'a Bound<'py, PyAny>>,
 }
 
@@ -79,14 +79,14 @@ impl Cast {
 
     /// Builds a query without checking it.
     pub(crate) fn from_arguments(arguments: Arguments<'_, '_>) -> PyResult<Self> {
-        let Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver } =
+        let Arguments { moving, fixed, direction, poses, graze_tolerance, min_gap, solver } =
             arguments;
         Ok(Self {
             moving: moving.clone().unbind(),
             fixed: fixed.clone().unbind(),
             poses: [pose(poses[0], "moving_pose")?, pose(poses[1], "fixed_pose")?],
             direction: vector(direction, "direction")?,
-            options: options_of(solver)?.with_graze_tolerance(graze_tolerance).with_keep(keep),
+            options: options_of(solver)?.with_graze_tolerance(graze_tolerance).with_keep(min_gap),
         })
     }
 
@@ -109,7 +109,7 @@ impl Cast {
         // All other queries take about a microsecond for bodies of any size; waiting for the lock would take
         // longer.
         let options = &self.options;
-        let is_long = options.keep != 0.0 || options.solver == colltrans::Solver::Cta;
+        let is_long = options.min_gap != 0.0 || options.solver == colltrans::Solver::Cta;
         let found = if is_long { py.detach(work) } else { work() };
         found.map_err(|what| self.error(&what))
     }
@@ -147,7 +147,7 @@ getters!(Cast, |it| {
     /// float: Lateral overlaps up to this length count as grazing.
     graze_tolerance: f64 = it.options.graze_tolerance;
     /// float: The minimum gap; 0 if there is none.
-    keep: f64 = it.options.keep;
+    min_gap: f64 = it.options.min_gap;
     /// str: The search algorithm.
     solver: &'static str = it.options.solver.name();
 });
@@ -156,8 +156,8 @@ getters!(Cast, |it| {
 impl Cast {
     #[new]
     #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
-        graze_tolerance=0.0, keep=0.0, solver=None), text_signature = "(moving, fixed, direction, \
-        *, moving_pose=None, fixed_pose=None, graze_tolerance=0.0, keep=0.0, solver='auto')")]
+        graze_tolerance=0.0, min_gap=0.0, solver=None), text_signature = "(moving, fixed, direction, \
+        *, moving_pose=None, fixed_pose=None, graze_tolerance=0.0, min_gap=0.0, solver='auto')")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn new(
         moving: ConvexArgument<'_>,
@@ -166,7 +166,7 @@ impl Cast {
         moving_pose: Option<&Bound<'_, PyAny>>,
         fixed_pose: Option<&Bound<'_, PyAny>>,
         graze_tolerance: f64,
-        keep: f64,
+        min_gap: f64,
         solver: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let poses = [moving_pose, fixed_pose];
@@ -177,7 +177,7 @@ impl Cast {
             direction,
             poses,
             graze_tolerance,
-            keep,
+            min_gap,
             solver,
         })?;
         query.with(|_| ())?;

@@ -187,7 +187,7 @@ impl SolidCast {
 }
 
 fn solids_meet<'py>(query: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>> {
-    if query.get().options.keep != 0.0 {
+    if query.get().options.min_gap != 0.0 {
         return Err(error(
             "QueryError",
             "intersects does not accept a gap for solids; call within(moving, fixed, length)",
@@ -202,8 +202,8 @@ macro_rules! question {
         $(#[$doc])*
         #[pyfunction]
         #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
-            graze_tolerance=0.0, keep=0.0, solver=None), text_signature = "(moving, fixed, \
-            direction, *, moving_pose=None, fixed_pose=None, graze_tolerance=0.0, keep=0.0, \
+            graze_tolerance=0.0, min_gap=0.0, solver=None), text_signature = "(moving, fixed, \
+            direction, *, moving_pose=None, fixed_pose=None, graze_tolerance=0.0, min_gap=0.0, \
             solver='auto')")]
         #[expect(clippy::too_many_arguments, reason = "they are keywords")]
         pub(crate) fn $name<'py>(
@@ -214,13 +214,13 @@ macro_rules! question {
             moving_pose: Option<&Bound<'py, PyAny>>,
             fixed_pose: Option<&Bound<'py, PyAny>>,
             graze_tolerance: f64,
-            keep: f64,
+            min_gap: f64,
             solver: Option<&Bound<'py, PyAny>>,
         ) -> PyResult<Bound<'py, PyAny>> {
             let poses = [moving_pose, fixed_pose];
             let (moving, fixed) = (&moving.0, &fixed.0);
             let asked =
-                Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver };
+                Arguments { moving, fixed, direction, poses, graze_tolerance, min_gap, solver };
             run_query(&Bound::new(py, Cast::from_arguments(asked)?)?, |cast| cast.$ask())
         }
     };
@@ -232,9 +232,9 @@ macro_rules! question_of_any {
         $(#[$doc])*
         #[pyfunction]
         #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
-            graze_tolerance=None, keep=0.0, solver=None, tolerance=None,
+            graze_tolerance=None, min_gap=0.0, solver=None, tolerance=None,
             ignore_start_overlaps=false), text_signature = "(moving, fixed, direction, *, \
-            moving_pose=None, fixed_pose=None, graze_tolerance=None, keep=0.0, solver='auto', \
+            moving_pose=None, fixed_pose=None, graze_tolerance=None, min_gap=0.0, solver='auto', \
             tolerance=None, ignore_start_overlaps=False)")]
         #[expect(clippy::too_many_arguments, reason = "they are keywords")]
         pub(crate) fn $name<'py>(
@@ -245,7 +245,7 @@ macro_rules! question_of_any {
             moving_pose: Option<&Bound<'py, PyAny>>,
             fixed_pose: Option<&Bound<'py, PyAny>>,
             graze_tolerance: Option<f64>,
-            keep: f64,
+            min_gap: f64,
             solver: Option<&Bound<'py, PyAny>>,
             tolerance: Option<f64>,
             ignore_start_overlaps: bool,
@@ -257,7 +257,7 @@ macro_rules! question_of_any {
                 }
                 let graze_tolerance = graze_tolerance.unwrap_or_default();
                 let asked =
-                    Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver };
+                    Arguments { moving, fixed, direction, poses, graze_tolerance, min_gap, solver };
                 return run_query(&Bound::new(py, Cast::from_arguments(asked)?)?, |cast| cast.$ask());
             }
             if graze_tolerance.is_some() || options_of(solver)?.solver != Solver::Auto {
@@ -271,7 +271,7 @@ macro_rules! question_of_any {
                 moving_pose,
                 fixed_pose,
                 tolerance,
-                keep,
+                min_gap,
                 ignore_start_overlaps,
             )?;
             $ask_solids(&Bound::new(py, query)?)

@@ -1,8 +1,9 @@
 //! Groups of rows with the same bodies and rotations. Large groups are answered with the faces of their
 //! Minkowski difference.
 //!
-//! The grouping depends on the rows alone, so the bits of the answers depend neither on the threads nor on
-//! the order of rows. The first thread that needs the data of a group computes them.
+//! The grouping depends on the rows alone, so the bits of the answers do not depend on the threads. They depend
+//! on the order of rows only if more than [`MOST_GROUPS`] groups are large enough: of equally large groups, those
+//! with the earlier first rows are then chosen. The first thread that needs the data of a group computes them.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};

@@ -43,7 +43,7 @@ pub(crate) struct Robot {
 /// A query for one path or many: the robot in its scene, and the minimum gap.
 struct PathRequest {
     cell: Cell,
-    keep: f64,
+    min_gap: f64,
 }
 
 /// A path as the caller gives it.
@@ -66,7 +66,7 @@ impl Robot {
         &self,
         scene: Option<&Bound<'_, PyAny>>,
         ignore: &[[String; 2]],
-        keep: f64,
+        min_gap: f64,
     ) -> PyResult<PathRequest> {
         let (mut bodies, mut dents) = (Vec::new(), Vec::new());
         if let Some(scene) = scene {
@@ -89,7 +89,7 @@ impl Robot {
         let cell =
             cell.with_dents(dents).ignoring(ignore).map_err(|what| input_error("ignore", what))?;
         let cell = cell.with_a_pair().map_err(|what| input_error("scene", what))?;
-        Ok(PathRequest { cell, keep })
+        Ok(PathRequest { cell, min_gap })
     }
 }
 
@@ -100,7 +100,7 @@ impl PathRequest {
     }
 
     fn cast<'a>(&'a self, path: &'a JointPath) -> Result<PathCast<'a>, String> {
-        self.cell.along(path, self.keep).map_err(|what| self.cell.words(&what))
+        self.cell.along(path, self.min_gap).map_err(|what| self.cell.words(&what))
     }
 
     fn first_contact(&self, path: &JointPath) -> Result<(PathOutcome, PathRecord), String> {
@@ -283,7 +283,7 @@ impl Robot {
     ///     The rows do not fit the joints, or a name is unknown.
     /// QueryError
     ///     The library rejects the query.
-    #[pyo3(signature = (path, scene=None, *, ignore=Vec::new(), keep=0.0, joints=BTreeMap::new(),
+    #[pyo3(signature = (path, scene=None, *, ignore=Vec::new(), min_gap=0.0, joints=BTreeMap::new(),
         columns=None, times=None))]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn first_contact(
@@ -292,12 +292,12 @@ impl Robot {
         path: &Bound<'_, PyAny>,
         scene: Option<&Bound<'_, PyAny>>,
         ignore: Vec<[String; 2]>,
-        keep: f64,
+        min_gap: f64,
         joints: BTreeMap<String, f64>,
         columns: Option<Vec<String>>,
         times: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PathAnswer> {
-        let asked = Arc::new(self.asked(scene, &ignore, keep)?);
+        let asked = Arc::new(self.asked(scene, &ignore, min_gap)?);
         let rows = Rows::read(path, columns, times, joints)?;
         let (path, said) = asked.path(&rows).map_err(|what| input_error("path", what))?;
         let notes = [asked.cell.notes(), &said].concat();
@@ -545,7 +545,7 @@ impl PathAnswer {
     /// Raises
     /// ------
     /// InputError
-    ///     The position is beyond the path.
+    ///     The position is not on the path: there is no such row, or the fraction is not between 0 and 1.
     #[pyo3(signature = (place=None))]
     fn meshes<'py>(
         &self,
@@ -667,14 +667,14 @@ pub(crate) fn ask_paths<'py>(
     paths: Vec<Bound<'py, PyAny>>,
     scene: Option<&Bound<'py, PyAny>>,
     ignore: Vec<[String; 2]>,
-    keep: f64,
+    min_gap: f64,
     joints: BTreeMap<String, f64>,
     columns: Option<Vec<String>>,
     times: Option<Vec<Bound<'py, PyAny>>>,
     told: Vec<String>,
     threads: Option<usize>,
 ) -> PyResult<(Answered<'py>, Vec<String>)> {
-    let asked = robot.get().asked(scene, &ignore, keep)?;
+    let asked = robot.get().asked(scene, &ignore, min_gap)?;
     let rows = paths.iter().enumerate().map(|(k, path)| {
         let times = times.as_ref().map(|all| &all[k]);
         Rows::read(path, columns.clone(), times, joints.clone())

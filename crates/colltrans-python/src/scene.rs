@@ -56,9 +56,9 @@ fn placed(body: &Piece, at: colltrans::Pose) -> AnyPlaced<'_> {
 }
 
 /// Returns the scene query with a minimum gap.
-pub(crate) fn with_min_gap<'a>(among: &Among<'a>, keep: f64) -> Result<Among<'a>, QueryError> {
-    let keeping = among.with_options(Options::default().with_keep(keep))?;
-    Ok(keeping.with_solid_options(SolidOptions::default().with_keep(keep)))
+pub(crate) fn with_min_gap<'a>(among: &Among<'a>, min_gap: f64) -> Result<Among<'a>, QueryError> {
+    let keeping = among.with_options(Options::default().with_keep(min_gap))?;
+    Ok(keeping.with_solid_options(SolidOptions::default().with_keep(min_gap)))
 }
 
 /// The query of an answer: a body among obstacles.

@@ -160,7 +160,7 @@ impl NearbyObstacles {
 pub(crate) struct ObstacleClearance {
     pub(crate) found: ClearanceAmong,
     pub(crate) direction: DVec3,
-    pub(crate) keep: f64,
+    pub(crate) min_gap: f64,
     pub(crate) asked: SceneRequest,
 }
 
@@ -169,7 +169,7 @@ proven!(ObstacleClearance);
 impl ObstacleClearance {
     fn proof(&self, py: Python<'_>) -> PyResult<ProofFile> {
         let of = |among: &Among<'_>| {
-            ProofFile::of_scene_clearance(&with_min_gap(among, self.keep)?, self.direction)
+            ProofFile::of_scene_clearance(&with_min_gap(among, self.min_gap)?, self.direction)
                 .map(Some)
         };
         self.asked.proof(py, of)

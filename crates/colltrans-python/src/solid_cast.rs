@@ -85,9 +85,9 @@ impl SolidCast {
         let solids = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
         let [moving, fixed] = [0, 1].map(|i| solids[i].at(self.poses[i]));
         let precisions = [0, 1].map(|i| self.bodies[i].precision());
-        let SolidOptions { tolerance, start_overlap, keep, .. } = self.options;
+        let SolidOptions { tolerance, start_overlap, min_gap, .. } = self.options;
         between(moving, fixed, self.direction, precisions, tolerance, start_overlap)
-            .and_then(|cast| cast.keeping(keep))
+            .and_then(|cast| cast.keeping(min_gap))
             .map(|cast| question(&cast))
             .map_err(|what| error("QueryError", what))
     }
@@ -153,7 +153,7 @@ getters!(SolidCast, |it| {
     /// float: The tolerance that is used, a length.
     tolerance(py): PyResult<f64> = py.detach(|| it.run(|cast| cast.tolerance()));
     /// float: The minimum gap; 0 if there is none.
-    keep: f64 = it.options.keep;
+    min_gap: f64 = it.options.min_gap;
     /// ndarray of shape (3,): The direction, as given.
     direction(py): Vector<'py> = row(py, it.direction);
 });
@@ -162,7 +162,7 @@ getters!(SolidCast, |it| {
 impl SolidCast {
     #[new]
     #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
-        tolerance=None, keep=0.0, ignore_start_overlaps=false))]
+        tolerance=None, min_gap=0.0, ignore_start_overlaps=false))]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     pub(crate) fn new(
         py: Python<'_>,
@@ -172,7 +172,7 @@ impl SolidCast {
         moving_pose: Option<&Bound<'_, PyAny>>,
         fixed_pose: Option<&Bound<'_, PyAny>>,
         tolerance: Option<f64>,
-        keep: f64,
+        min_gap: f64,
         ignore_start_overlaps: bool,
     ) -> PyResult<Self> {
         let start_overlap =
@@ -183,7 +183,7 @@ impl SolidCast {
             direction: vector(direction, "direction")?,
             options: SolidOptions::default()
                 .with_tolerance(tolerance)
-                .with_keep(keep)
+                .with_keep(min_gap)
                 .with_start_overlap(start_overlap),
         };
         py.detach(|| cast.run(|_| ()))?;
@@ -215,7 +215,7 @@ impl SolidCast {
         named.set_item("moving_pose", self.moving_pose())?;
         named.set_item("fixed_pose", self.fixed_pose())?;
         named.set_item("tolerance", self.options.tolerance)?;
-        named.set_item("keep", self.options.keep)?;
+        named.set_item("min_gap", self.options.min_gap)?;
         let ignores = self.options.start_overlap == StartOverlap::Ignore;
         named.set_item("ignore_start_overlaps", ignores)?;
         Ok(((self.moving(py), self.fixed(py), self.direction.to_array()), named))

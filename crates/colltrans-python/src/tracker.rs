@@ -154,9 +154,9 @@ macro_rules! questions {
             $(
                 $(#[$doc])*
                 #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,
-                    graze_tolerance=0.0, keep=0.0, solver=None), text_signature = "($self, \
+                    graze_tolerance=0.0, min_gap=0.0, solver=None), text_signature = "($self, \
                     moving, fixed, direction, *, moving_pose=None, fixed_pose=None, \
-                    graze_tolerance=0.0, keep=0.0, solver='auto')")]
+                    graze_tolerance=0.0, min_gap=0.0, solver='auto')")]
                 #[expect(clippy::too_many_arguments, reason = "they are keywords")]
                 fn $name<'py>(
                     &mut self,
@@ -167,7 +167,7 @@ macro_rules! questions {
                     moving_pose: Option<&Bound<'py, PyAny>>,
                     fixed_pose: Option<&Bound<'py, PyAny>>,
                     graze_tolerance: f64,
-                    keep: f64,
+                    min_gap: f64,
                     solver: Option<&Bound<'py, PyAny>>,
                 ) -> PyResult<Bound<'py, PyAny>> {
                     let poses = [moving_pose, fixed_pose];
@@ -177,7 +177,7 @@ macro_rules! questions {
                         direction,
                         poses,
                         graze_tolerance,
-                        keep,
+                        min_gap,
                         solver,
                     };
                     let query = Bound::new(py, Cast::from_arguments(arguments)?)?;

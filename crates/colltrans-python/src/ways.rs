@@ -1,9 +1,9 @@
 //! Removal paths: sequences of straight moves by which one body leaves another.
 
 use colltrans::Placed;
-use colltrans::free::FreeError;
+use colltrans::removal::directions::FreeError;
 use colltrans::record::WaysRecord;
-use colltrans::ways::WayOptions;
+use colltrans::removal::path::WayOptions;
 use pyo3::prelude::*;
 
 use crate::arrays::points;
@@ -18,7 +18,7 @@ use crate::solid_cast::{placed_bodies, run_patiently};
 pub(crate) struct WaysOut {
     bodies: [Piece; 2],
     poses: [colltrans::Pose; 2],
-    answer: colltrans::ways::WaysOut,
+    answer: colltrans::removal::path::WaysOut,
     record: WaysRecord,
 }
 
@@ -71,9 +71,9 @@ impl WaysOut {
         py.detach(|| {
             let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
             match &self.answer {
-                colltrans::ways::WaysOut::Found(way) => way.verify(&[moving, fixed]),
-                colltrans::ways::WaysOut::Proven(proof) => proof.verify(&moving, &fixed),
-                colltrans::ways::WaysOut::NotFound { .. } => Ok(()),
+                colltrans::removal::path::WaysOut::Found(way) => way.verify(&[moving, fixed]),
+                colltrans::removal::path::WaysOut::Proven(proof) => proof.verify(&moving, &fixed),
+                colltrans::removal::path::WaysOut::NotFound { .. } => Ok(()),
             }
             .map_err(free_error)
         })
@@ -166,7 +166,7 @@ pub(crate) fn ways_out(
     let copies = [bodies[0].copy(py), bodies[1].copy(py)];
     run_patiently(py, &copies, move || {
         let [moving, fixed] = place_bodies(&bodies, &poses)?;
-        let answer = colltrans::ways::WaysOut::of(&moving, &fixed, &options).map_err(free_error)?;
+        let answer = colltrans::removal::path::WaysOut::of(&moving, &fixed, &options).map_err(free_error)?;
         let record = WaysRecord::of(&answer);
         Ok(WaysOut { bodies, poses, answer, record })
     })

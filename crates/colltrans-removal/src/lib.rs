@@ -14,5 +14,5 @@
     reason = "the documentation of hidden modules is read together with private items"
 )]
 
-pub mod free;
-pub mod ways;
+pub mod directions;
+pub mod path;

@@ -1,10 +1,10 @@
 //! Answers about one body among many.
 
-use super::AmongSteps;
+use super::SceneSteps;
 use colltrans_convex::body::ObstacleId;
 use colltrans_solid::kinds::{AnyClearance, AnyDistance, AnyNear};
 
-/// The answer of [`Among::nearest`](super::Among::nearest).
+/// The answer of [`SceneQuery::nearest`](super::Among::nearest).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -17,10 +17,10 @@ pub struct Nearest {
     /// Lower bound of the distances of all obstacles, rounded down. It is at most the lower bound of `distance`.
     pub lower: f64,
     /// Work of the query.
-    pub steps: AmongSteps,
+    pub steps: SceneSteps,
 }
 
-/// The answer of [`Among::within`](super::Among::within), in the order of insertion.
+/// The answer of [`SceneQuery::within`](super::Among::within), in the order of insertion.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -30,30 +30,33 @@ pub struct Nearby {
     /// The obstacles that rounding errors cannot decide: the length lies between the bounds of their distance.
     pub undecided: Vec<(ObstacleId, AnyDistance)>,
     /// Work of the query.
-    pub steps: AmongSteps,
+    pub steps: SceneSteps,
 }
 
-/// The answer of [`Among::clearance`](super::Among::clearance).
+/// The answer of [`SceneQuery::clearance`](super::Among::clearance).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct ClearanceAmong {
+pub struct SceneClearance {
     /// Translation before which no obstacle stops the moving body, in multiples of the direction. It is infinity if
     /// none does, or the end of the query, and 0 if the body overlaps an obstacle at the start.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(with = "colltrans_kernel::serialization::null_as_infinity")
+    )]
     pub lower: f64,
     /// The obstacle that stops the body ([`Clearance::Blocked`](colltrans_convex::Clearance::Blocked)) or overlaps it
     /// ([`Clearance::Overlapping`](colltrans_convex::Clearance::Overlapping)): the one with the least upper bound. If
     /// several are equal or overlap, the one inserted first.
     pub stop: Option<(ObstacleId, AnyClearance)>,
     /// Work of the query.
-    pub steps: AmongSteps,
+    pub steps: SceneSteps,
 }
 
-impl ClearanceAmong {
+impl SceneClearance {
     /// Returns the translation by which the moving body can safely move past all obstacles, in multiples of the
     /// direction. It is infinity if nothing stops the body, and `None` if it overlaps an obstacle at the start.
-    pub fn distance(&self) -> Option<f64> {
+    pub fn safe_translation(&self) -> Option<f64> {
         let overlaps = self.stop.is_some_and(|(_, stop)| stop.distance().is_none());
         (!overlaps).then_some(self.lower)
     }

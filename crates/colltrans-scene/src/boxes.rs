@@ -1,7 +1,7 @@
 //! Boxes of placed bodies, and lower bounds of distances and translations that they prove.
 //!
-//! All numbers are rounded outwards. `u = 2^-53`. A box contains its body where the numbers of the pose place it
-//! exactly.
+//! All numbers are rounded outwards. `u = 2^-53` is the unit roundoff. A box contains the body as the numbers of the
+//! pose place it without rounding.
 //!
 //! - *Boxes.* A coordinate is the sum of three products and a translation. Its error is at most `3 u` of the products,
 //!   `2 u` of their sum and `u` of the result, together `7 u (r + |t|)`. `r` is three times the largest absolute
@@ -10,8 +10,8 @@
 //!   numbers are subtracted. Squares do not overflow; underflow makes a bound smaller.
 //! - *Translations.* A difference divided by a component of the direction has a relative error below `3 u`.
 //!
-//! All bounds grow with the distance of the boxes, also when rounded. A bound of a box therefore also holds for the
-//! boxes inside it, by the same computation.
+//! All bounds are monotone, also when rounded: for a box inside another one, the same computation returns at least the
+//! bound of the outer box. The bound of a box therefore also holds for the boxes inside it.
 
 use glam::{DMat3, DVec3};
 
@@ -28,10 +28,10 @@ const BOUND_ERROR: f64 = 8.0 * ROUNDING;
 /// Maximum number of vertices of a body whose vertices are all transformed. Larger bodies use support points, or boxes
 /// of their own tree.
 const MAX_SCANNED_VERTICES: usize = 32;
-/// Maximum number of boxes of the tree of a solid.
+/// Maximum number of visited nodes of the tree of a solid.
 const MAX_TREE_BOXES: usize = 16;
 
-/// Returns a box that holds a placed body.
+/// Returns a box that contains a placed body.
 pub(super) fn bounds_of_placed(placed: &AnyPlaced<'_>) -> Aabb {
     match placed {
         ByKind::Convex(placed) => bounds_of_convex(placed.body, &placed.pose),
@@ -49,7 +49,7 @@ fn bounds_of_convex(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
     let mut bounds = Aabb::EMPTY;
     for (axis, row) in rows.to_cols_array_2d().map(DVec3::from_array).into_iter().enumerate() {
         let reach = |normal: DVec3| {
-            let (vertex, beyond) = body.settled(normal, body.support(normal).0);
+            let (vertex, beyond) = body.support_with_excess(normal, body.support(normal).0);
             // Rows of the matrix are unit vectors up to a relative error of 1e-6.
             normal.dot(body.vertices()[vertex as usize]) + 1.001 * beyond
         };
@@ -73,9 +73,9 @@ fn bounds_of_solid(solid: &Solid, pose: &Pose) -> Aabb {
     while first < count {
         let node = &nodes[open_nodes[first] as usize];
         if node.is_leaf() || count + 2 > MAX_TREE_BOXES {
-            bounds = bounds.join(&rotated_box(&node.bounds, &matrix));
+            bounds = bounds.union(&rotated_box(&node.bounds, &matrix));
         } else {
-            let child = open_nodes[first] + node.skip;
+            let child = open_nodes[first] + node.child_offset;
             (open_nodes[count], open_nodes[count + 1]) = (child, child + 1);
             count += 2;
         }
@@ -91,7 +91,7 @@ fn bounds_of_points(points: &[DVec3], pose: &Pose, excess: f64) -> Aabb {
     let matrix = pose.matrix();
     let (mut bounds, mut size) = (Aabb::EMPTY, DVec3::ZERO);
     for &v in points {
-        bounds.add(matrix * v);
+        bounds.extend_to(matrix * v);
         size = size.max(v.abs());
     }
     enlarged_outwards(bounds, DVec3::splat(3.0 * size.max_element()), pose.translation(), excess)

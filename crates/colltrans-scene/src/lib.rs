@@ -5,8 +5,9 @@
 //!
 //! - `U` is the least upper bound found so far, of a distance or of the translation at which a body stops the moving
 //!   one.
-//! - Invariant: a box is excluded only if its bound, rounded outwards, is above `U`. The bodies in it therefore have
-//!   upper bounds above `U`, and they do not lower the lower bound of the answer.
+//! - Invariant: a box is excluded only if its bound, rounded down, is above `U`. A body inserted after the best one so
+//!   far is also excluded if its bound equals `U`, or if the best one overlaps the moving body. Excluded bodies change
+//!   neither bound of the answer.
 //! - The answer is that of querying all bodies one by one: the body with the least upper bound, or the one inserted
 //!   first if several are equal. It does not depend on the tree.
 //! - The least lower bound of the queried bodies is a lower bound for all bodies.
@@ -32,8 +33,8 @@ use std::fmt;
 
 use glam::DVec3;
 
-pub use answer::{ClearanceAmong, Nearby, Nearest};
-pub use bulk::{Approach, FixedRotations};
+pub use answer::{Nearby, Nearest, SceneClearance};
+pub use bulk::{DirectionMap, FixedRotations};
 use colltrans_convex::ConvexPolyhedron;
 use colltrans_convex::body::{Aabb, ObstacleId, Pose};
 use colltrans_convex::cast::Cast;
@@ -47,7 +48,9 @@ use colltrans_solid::kinds::{AnyBody, AnyPlaced, ByKind};
 use colltrans_solid::{SolidCast, SolidPair};
 use obstacles::Obstacle;
 pub use obstacles::{Obstacles, UnknownObstacle};
-pub use proof::{AmongProof, ApartProof, ClearanceProof, NearbyProof, NearestProof, PassedProof};
+pub use proof::{
+    ApartProof, ClearanceProof, NearbyProof, NearestProof, ObstacleClearanceProof, SceneProof,
+};
 
 /// Predicate for obstacles that a query ignores.
 type IgnoredPredicate<'a> = &'a (dyn Fn(ObstacleId) -> bool + Sync);
@@ -61,7 +64,7 @@ type IgnoredPredicate<'a> = &'a (dyn Fn(ObstacleId) -> bool + Sync);
 /// ```
 /// use colltrans::glam::DVec3;
 /// use colltrans::solid::SolidCast;
-/// use colltrans::{Among, ConvexPolyhedron, Obstacles, Pose};
+/// use colltrans::{SceneQuery, ConvexPolyhedron, Obstacles, Pose};
 ///
 /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
 /// let mut scene = Obstacles::new();
@@ -72,7 +75,7 @@ type IgnoredPredicate<'a> = &'a (dyn Fn(ObstacleId) -> bool + Sync);
 ///
 /// let hand = Pose::from_translation(DVec3::new(0.0, 0.0, 3.0))?;
 /// let own = |id| id == finger;
-/// let query = Among::new(cube.at(hand), &scene)?.ignoring(&own);
+/// let query = SceneQuery::new(cube.at(hand), &scene)?.ignoring(&own);
 /// assert_eq!(query.nearest()?.expect("there are some").obstacle, mug);
 /// assert_eq!(query.within(2.5)?.closer.len(), 1);
 /// let stop = query.clearance(DVec3::NEG_Z)?.stop.expect("the table is below");
@@ -85,7 +88,7 @@ type IgnoredPredicate<'a> = &'a (dyn Fn(ObstacleId) -> bool + Sync);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy)]
-pub struct Among<'a> {
+pub struct SceneQuery<'a> {
     moving: AnyPlaced<'a>,
     obstacles: &'a Obstacles,
     bounds: Aabb,
@@ -97,7 +100,7 @@ pub struct Among<'a> {
 /// Counters of the work of a query.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct AmongSteps {
+pub struct SceneSteps {
     /// Number of visited boxes, of single obstacles and of inner nodes.
     pub boxes: u32,
     /// Number of obstacles that were queried.
@@ -110,13 +113,14 @@ pub(crate) type AnyPair<'a> = ByKind<Pair<'a>, Pair<'a, Solid>>;
 /// A cast of bodies of the same kind.
 pub(crate) type AnyCast<'a> = ByKind<Cast<'a>, Cast<'a, Solid>>;
 
-impl<'a> Among<'a> {
+impl<'a> SceneQuery<'a> {
     /// Builds the queries of a placed body among obstacles, with default options.
     ///
     /// # Errors
     /// Returns an error for a convex body whose facets [`Solid::from_mesh`](colltrans_solid::Solid::from_mesh) rejects,
     /// if it must be converted to a solid. This applies to a moving body among solids, and to the obstacles of a moving
-    /// solid ([`QueryError::Obstacle`] with the id).
+    /// solid ([`QueryError::Obstacle`] with the id). The obstacles are checked here only if one of them is a point or a
+    /// segment; otherwise the queries return this error.
     pub fn new(
         moving: impl Into<AnyPlaced<'a>>,
         obstacles: &'a Obstacles,
@@ -149,7 +153,7 @@ impl<'a> Among<'a> {
     /// # Errors
     /// Returns the errors of [`Cast::with_options`].
     pub fn with_options(self, options: Options) -> Result<Self, QueryError> {
-        options.check()?;
+        options.check_lengths()?;
         Ok(Self { options, ..self })
     }
 
@@ -189,11 +193,11 @@ impl<'a> Among<'a> {
 
     /// Returns the box of the moving body, enlarged by the minimum gap of casts and a margin for rounding.
     fn query_box(&self) -> Aabb {
-        let keep = self.options.keep.max(self.solid_options.keep);
-        if keep > 0.0 {
+        let min_gap = self.options.min_gap.max(self.solid_options.min_gap);
+        if min_gap > 0.0 {
             let Aabb { low, high } = self.bounds;
-            let size = low.abs().max(high.abs()).max_element() + keep;
-            self.bounds.grown(keep + 16.0 * f64::EPSILON * size)
+            let size = low.abs().max(high.abs()).max_element() + min_gap;
+            self.bounds.expanded(min_gap + 16.0 * f64::EPSILON * size)
         } else {
             self.bounds
         }
@@ -210,7 +214,7 @@ impl<'a> Among<'a> {
     }
 
     /// Returns the number of obstacles that are not ignored.
-    pub fn count(&self) -> usize {
+    pub fn queried_count(&self) -> usize {
         if self.ignored.is_none() { self.obstacles.len() } else { self.queried_obstacles().count() }
     }
 
@@ -227,7 +231,7 @@ impl<'a> Among<'a> {
     /// cast cannot be built.
     #[cfg(feature = "serde")]
     #[doc(hidden)]
-    pub fn cast_at(&self, id: ObstacleId, direction: DVec3) -> Option<AnyCast<'a>> {
+    pub fn cast_with(&self, id: ObstacleId, direction: DVec3) -> Option<AnyCast<'a>> {
         let item = self.obstacles.item_of(id).ok()?;
         self.cast_with_obstacle(self.obstacle_of_item(item), direction).ok()
     }
@@ -235,7 +239,7 @@ impl<'a> Among<'a> {
     /// Returns the bodies that are not ignored, with their poses, in the order of insertion.
     #[cfg(feature = "json")]
     #[doc(hidden)]
-    pub fn asked_in_order(&self) -> impl Iterator<Item = (&'a AnyBody, Pose)> {
+    pub fn queried_in_order(&self) -> impl Iterator<Item = (&'a AnyBody, Pose)> {
         let mut all: Vec<&Obstacle> = self.queried_obstacles().collect();
         all.sort_unstable_by_key(|one| one.id);
         all.into_iter().map(|one| (&one.body, one.pose))
@@ -287,7 +291,7 @@ impl Obstacles {
     }
 }
 
-impl fmt::Debug for Among<'_> {
+impl fmt::Debug for SceneQuery<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Among")
             .field("moving", &self.moving)
@@ -300,7 +304,7 @@ impl fmt::Debug for Among<'_> {
 /// Checks at compile time that queries can be shared by threads.
 const _: fn() = || {
     fn shared<T: Send + Sync>() {}
-    shared::<Among<'_>>();
+    shared::<SceneQuery<'_>>();
     shared::<Obstacles>();
     shared::<ConvexPolyhedron>();
 };

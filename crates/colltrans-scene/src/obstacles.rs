@@ -17,18 +17,18 @@ pub struct UnknownObstacle {
     pub id: ObstacleId,
 }
 
-/// Many placed bodies, convex ones and solids, for queries by [`Among`](crate::Among).
+/// Many placed bodies, convex ones and solids, for queries by [`SceneQuery`](crate::Among).
 ///
 /// Bodies are shared, so thousands of placements of one mesh take the memory of one. A tree of boxes is maintained.
 /// Inserting all at once ([`Self::insert_all`]) takes `O(n log n)`. Inserting, moving or removing one takes `O(log^2
 /// n)` amortised, because subtrees are rebuilt after as many changes as they have obstacles. The height of the tree
-/// therefore stays below `5.2 log2 n` plus a constant, and it never needs to be rebuilt by the caller.
+/// therefore stays below `5.2 log2 n` plus a constant, and the caller never needs to rebuild the tree.
 ///
 /// ```
 /// use std::sync::Arc;
 ///
 /// use colltrans::glam::DVec3;
-/// use colltrans::{Among, ConvexPolyhedron, Obstacles, Pose};
+/// use colltrans::{SceneQuery, ConvexPolyhedron, Obstacles, Pose};
 ///
 /// let cube = Arc::new(ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?);
 /// let mut shelf = Obstacles::new();
@@ -38,7 +38,7 @@ pub struct UnknownObstacle {
 ///
 /// let hand = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::splat(0.5))?;
 /// let above = Pose::from_translation(DVec3::new(24.25, 0.25, 5.0))?;
-/// let query = Among::new(hand.at(above), &shelf)?;
+/// let query = SceneQuery::new(hand.at(above), &shelf)?;
 /// let nearest = query.nearest()?.expect("there are obstacles");
 /// assert_eq!(nearest.obstacle, ids[12]);
 /// assert!(nearest.lower <= 4.0 && 4.0 <= nearest.distance.upper());
@@ -46,7 +46,7 @@ pub struct UnknownObstacle {
 /// let down = query.clearance(DVec3::NEG_Z)?;
 /// assert_eq!(down.stop.expect("it is in the way").0, ids[12]);
 /// shelf.remove(ids[12]);
-/// assert_eq!(Among::new(hand.at(above), &shelf)?.clearance(DVec3::NEG_Z)?.lower, f64::INFINITY);
+/// assert_eq!(SceneQuery::new(hand.at(above), &shelf)?.clearance(DVec3::NEG_Z)?.lower, f64::INFINITY);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Default)]
@@ -111,8 +111,8 @@ impl Obstacles {
             bodies.map(|(body, pose)| self.store_obstacle(body.into(), pose)).collect();
         let new = self.placed[before..].iter().map(|obstacle| bounds_of_placed(&obstacle.placed()));
         if 2 * ids.len() > before {
-            let old = (0..before).map(|item| *self.tree.bounds(item as u32));
-            self.tree = DynamicTree::build(old.chain(new));
+            let old = (0..before).map(|item| *self.tree.item_bounds(item as u32));
+            self.tree = DynamicTree::from_boxes(old.chain(new));
         } else {
             new.for_each(|bounds| self.tree.insert(bounds));
         }
@@ -156,7 +156,7 @@ impl Obstacles {
         let item = self.item_of(id)?;
         let obstacle = &mut self.placed[item as usize];
         obstacle.pose = pose;
-        self.tree.set(item, bounds_of_placed(&obstacle.placed()));
+        self.tree.set_bounds(item, bounds_of_placed(&obstacle.placed()));
         Ok(())
     }
 
@@ -173,14 +173,14 @@ impl Obstacles {
         let bounds = |item: &u32| bounds_of_placed(&self.placed[*item as usize].placed());
         if 4 * items.len() > self.len() {
             let mut boxes: Vec<Aabb> =
-                (0..self.len()).map(|k| *self.tree.bounds(k as u32)).collect();
+                (0..self.len()).map(|k| *self.tree.item_bounds(k as u32)).collect();
             for item in &items {
                 boxes[*item as usize] = bounds(item);
             }
-            self.tree = DynamicTree::build(boxes);
+            self.tree = DynamicTree::from_boxes(boxes);
         } else {
             for item in &items {
-                self.tree.set(*item, bounds(item));
+                self.tree.set_bounds(*item, bounds(item));
             }
         }
         Ok(())
@@ -215,7 +215,7 @@ impl Obstacles {
 
     /// Returns a box that contains all obstacles, rounded outwards. Returns `None` if there are none.
     pub fn bounds(&self) -> Option<Aabb> {
-        self.tree.root().copied()
+        self.tree.root_bounds().copied()
     }
 
     /// Returns the obstacles in the order of the items of the tree.
@@ -234,7 +234,7 @@ impl Obstacles {
     }
 }
 
-/// Checks whether a body has no faces, so that it cannot be converted to a solid.
+/// Checks whether a body has no faces: a point or a segment.
 fn has_no_faces(body: &AnyBody) -> bool {
     matches!(body, AnyBody::Convex(body) if body.face_count() == 0)
 }

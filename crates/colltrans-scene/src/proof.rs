@@ -7,8 +7,8 @@ use glam::DVec3;
 use super::boxes::{self, Sweep};
 use super::obstacles::Obstacle;
 use super::search::Closeness;
-use super::{Among, ByKind, ClearanceAmong, Nearby, Nearest};
-use colltrans_convex::answer::{Clearance, PlaneGap, Within, checked_as};
+use super::{ByKind, Nearby, Nearest, SceneClearance, SceneQuery};
+use colltrans_convex::answer::{Clearance, PlaneGap, Within, impl_from_proofs};
 use colltrans_convex::body::{Aabb, ObstacleId};
 use colltrans_convex::setting::check_length;
 use colltrans_convex::setting::error::QueryError;
@@ -20,11 +20,11 @@ use colltrans_solid::{SolidCast, SolidPair};
 /// Proof that an obstacle is not nearer than a distance.
 pub type ApartProof = ByKind<PlaneGap, DistanceCertificate>;
 
-/// Proof where an obstacle stops the moving body, or that it does not. For convex bodies it is the answer, which
-/// contains its proof.
-pub type PassedProof = ByKind<Clearance, SolidCertificate>;
+/// Proof that an obstacle stops the moving body within the claimed bounds, or does not stop it. For convex bodies it is
+/// the answer itself, which contains its certificates.
+pub type ObstacleClearanceProof = ByKind<Clearance, SolidCertificate>;
 
-/// The proof of [`Among::nearest`].
+/// The proof of [`SceneQuery::nearest`].
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -42,7 +42,7 @@ pub struct NearestProof {
     pub apart: Vec<(ObstacleId, ApartProof)>,
 }
 
-/// The proof of [`Among::within`].
+/// The proof of [`SceneQuery::within`].
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -51,7 +51,10 @@ pub struct NearestProof {
 )]
 pub struct NearbyProof {
     /// Length of the query, in world units.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(with = "colltrans_kernel::serialization::null_as_infinity")
+    )]
     pub length: f64,
     /// The obstacles that are closer. All lists are in the order of insertion.
     pub closer: Vec<(ObstacleId, AnyNear)>,
@@ -61,7 +64,7 @@ pub struct NearbyProof {
     pub apart: Vec<(ObstacleId, ApartProof)>,
 }
 
-/// The proof of [`Among::clearance`].
+/// The proof of [`SceneQuery::clearance`].
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -72,14 +75,20 @@ pub struct ClearanceProof {
     /// Direction of the query.
     pub direction: DVec3,
     /// Translation before which no obstacle stops the moving body, in multiples of the direction; 0 if it overlaps one.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(with = "colltrans_kernel::serialization::null_as_infinity")
+    )]
     pub lower: f64,
     /// The obstacle that stops or overlaps the moving body.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "colltrans_kernel::serialization::required_option")
+    )]
     pub stop: Option<ObstacleId>,
     /// Proofs for the obstacles that their boxes do not exclude, including the one that stops the body, in the order of
-    /// insertion.
-    pub passed: Vec<(ObstacleId, PassedProof)>,
+    /// insertion. If an obstacle overlaps the body, only the proof of this obstacle.
+    pub passed: Vec<(ObstacleId, ObstacleClearanceProof)>,
 }
 
 #[cfg(feature = "json")]
@@ -101,7 +110,7 @@ impl ClearanceProof {
 /// A proof about one body among many.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
-pub enum AmongProof<'a> {
+pub enum SceneProof<'a> {
     /// Proof of the nearest obstacle.
     Nearest(&'a NearestProof),
     /// Proof of the obstacles within a distance.
@@ -110,10 +119,10 @@ pub enum AmongProof<'a> {
     Clearance(&'a ClearanceProof),
 }
 
-checked_as!(AmongProof { Nearest(NearestProof), Nearby(NearbyProof), Clearance(ClearanceProof) });
+impl_from_proofs!(SceneProof { Nearest(NearestProof), Nearby(NearbyProof), Clearance(ClearanceProof) });
 
 /// Queries with proofs.
-impl<'a> Among<'a> {
+impl<'a> SceneQuery<'a> {
     /// Finds the nearest obstacle as [`Self::nearest`] does, with a proof. The proof covers all obstacles whose boxes
     /// are nearer than the lower bound.
     ///
@@ -165,15 +174,16 @@ impl<'a> Among<'a> {
         Ok((nearby, proof))
     }
 
-    /// Computes the clearance as [`Self::clearance`] does, with a proof. The proof covers all obstacles whose boxes are
-    /// met before the end of the clearance.
+    /// Computes the clearance as [`Self::clearance`] does, with a proof. The proof covers all obstacles whose boxes do
+    /// not exclude a contact before the lower bound, and the one that stops the body. If an obstacle overlaps the body,
+    /// it covers only this obstacle.
     ///
     /// # Errors
     /// Returns the errors of [`Self::clearance`].
     pub fn certified_clearance(
         &self,
         direction: DVec3,
-    ) -> Result<(ClearanceAmong, ClearanceProof), QueryError> {
+    ) -> Result<(SceneClearance, ClearanceProof), QueryError> {
         let clearance = self.clearance(direction)?;
         let stop = clearance.stop.map(|(id, _)| id);
         let mut proof =
@@ -186,12 +196,12 @@ impl<'a> Among<'a> {
         Ok((clearance, proof))
     }
 
-    /// Proves where an obstacle stops the moving body, or that it does not.
+    /// Proves bounds of the translation at which an obstacle stops the moving body, or that it does not stop it.
     fn prove_clearance(
         &self,
         one: &'a Obstacle,
         direction: DVec3,
-    ) -> Result<PassedProof, QueryError> {
+    ) -> Result<ObstacleClearanceProof, QueryError> {
         Ok(match self.cast_with_obstacle(one, direction)? {
             ByKind::Convex(cast) => ByKind::Convex(cast.clearance()?),
             ByKind::Solid(cast) => ByKind::Solid(cast.certified_clearance()?.1),
@@ -202,12 +212,12 @@ impl<'a> Among<'a> {
     /// the one that stops the body. If the bodies overlap, only the latter is returned.
     fn obstacles_to_prove(
         &self,
-        clearance: &ClearanceAmong,
+        clearance: &SceneClearance,
         direction: DVec3,
     ) -> Vec<&'a Obstacle> {
         let stop = clearance.stop.and_then(|(id, _)| self.obstacles.item_of(id).ok());
         let stop = stop.map(|item| self.obstacle_of_item(item));
-        if clearance.distance().is_none() {
+        if clearance.safe_translation().is_none() {
             return stop.into_iter().collect();
         }
         let sweep = Sweep::new(self.query_box(), direction);
@@ -231,7 +241,7 @@ impl<'a> Among<'a> {
             }
             Ok::<_, Infallible>(below)
         };
-        let Ok(_) = self.obstacles.tree().search(below, bound, visit);
+        let Ok(_) = self.obstacles.tree().visit_by_bound(below, bound, visit);
         found.sort_unstable_by_key(|one| one.id);
         found
     }
@@ -266,7 +276,7 @@ pub(super) fn claimed_distance(proof: &ApartProof) -> f64 {
 }
 
 /// Returns the translation before which the proof claims no contact; 0 if the bodies overlap.
-fn claimed_translation(proof: &PassedProof) -> f64 {
+fn claimed_translation(proof: &ObstacleClearanceProof) -> f64 {
     match proof {
         ByKind::Convex(clearance) => clearance.distance().unwrap_or(0.0),
         ByKind::Solid(certificate) => certificate.lower,

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::boxes;
 use super::boxes::Sweep;
 use super::obstacles::Obstacle;
-use super::{Among, AmongSteps, ByKind, ClearanceAmong, Nearby, Nearest};
+use super::{ByKind, Nearby, Nearest, SceneClearance, SceneQuery, SceneSteps};
 use colltrans_convex::answer::{Clearance, Within};
 use colltrans_convex::body::ObstacleId;
 use colltrans_convex::cast::Cast;
@@ -19,16 +19,17 @@ use colltrans_solid::{SolidCast, SolidScene};
 /// bounds.
 const SEARCH_MARGIN: f64 = 64.0;
 
-impl Among<'_> {
-    /// Finds the nearest obstacle and its distance. Returns `None` if there are no obstacles.
+impl SceneQuery<'_> {
+    /// Finds the nearest obstacle and its distance. Returns `None` if there are no obstacles, or all are ignored.
     ///
     /// # Errors
-    /// Returns [`QueryError::NotConverged`] with the obstacle if a search ends without an answer.
+    /// Returns [`QueryError::Obstacle`] with the error of an obstacle: [`QueryError::NotConverged`] if a search ends
+    /// without an answer, or that of a convex body that cannot be converted to a solid.
     pub fn nearest(&self) -> Result<Option<Nearest>, QueryError> {
         let mut best: Option<(ObstacleId, AnyDistance)> = None;
         let (mut lower, mut limit, mut bodies) = (f64::INFINITY, f64::INFINITY, 0);
         let bound = |other: &_| boxes::box_distance(&self.bounds, other);
-        let boxes = self.obstacles.tree().search(limit, bound, |item, bound| {
+        let boxes = self.obstacles.tree().visit_by_bound(limit, bound, |item, bound| {
             let obstacle = self.obstacle_of_item(item);
             let id = obstacle.id;
             let is_later = best.is_some_and(|(first, _)| bound == limit && id > first);
@@ -47,7 +48,7 @@ impl Among<'_> {
             }
             Ok::<_, QueryError>(limit)
         })?;
-        let steps = AmongSteps { boxes, bodies };
+        let steps = SceneSteps { boxes, bodies };
         Ok(best.map(|(obstacle, distance)| Nearest { obstacle, distance, lower, steps }))
     }
 
@@ -77,7 +78,7 @@ impl Among<'_> {
         check_length(length)?;
         let mut nearby = Nearby::default();
         let bound = |other: &_| boxes::box_distance(&self.bounds, other);
-        let boxes = self.obstacles.tree().search(length, bound, |item, _| {
+        let boxes = self.obstacles.tree().visit_by_bound(length, bound, |item, _| {
             let obstacle = self.obstacle_of_item(item);
             if !self.is_ignored(obstacle.id) {
                 let found = self.closeness_of(obstacle, length);
@@ -132,7 +133,7 @@ impl Nearby {
     }
 }
 
-impl Among<'_> {
+impl SceneQuery<'_> {
     /// Computes how far the moving body can move along a direction of any length, and the obstacle that stops it.
     ///
     /// The answer is that of [`Cast::clearance`] of each obstacle. Obstacles behind the body do not stop it, nor do
@@ -142,12 +143,12 @@ impl Among<'_> {
     /// # Errors
     /// Returns an error if the direction is zero, not finite or out of range, and the errors of [`Cast::clearance`] of
     /// the obstacles.
-    pub fn clearance(&self, direction: DVec3) -> Result<ClearanceAmong, QueryError> {
+    pub fn clearance(&self, direction: DVec3) -> Result<SceneClearance, QueryError> {
         self.clearance_before(direction, f64::INFINITY)
     }
 
-    /// Computes the clearance up to an end, in multiples of the direction. Obstacles whose upper bound is not before
-    /// the end are ignored.
+    /// Computes the clearance up to an end, in multiples of the direction. The lower bound is at most the end. An
+    /// obstacle whose upper bound is not before the end is not reported as the stop, but its lower bound still counts.
     ///
     /// # Errors
     /// Returns an error if the end is negative or not a number, and the errors of [`Self::clearance`].
@@ -155,14 +156,14 @@ impl Among<'_> {
         &self,
         direction: DVec3,
         end: f64,
-    ) -> Result<ClearanceAmong, QueryError> {
+    ) -> Result<SceneClearance, QueryError> {
         check_direction(direction)?;
         check_length(end)?;
         let sweep = Sweep::new(self.query_box(), direction);
         let mut stop: Option<(ObstacleId, AnyClearance)> = None;
         let (mut lower, mut upper, mut bodies) = (end, end, 0);
         let entry = |other: &_| sweep.entry(other);
-        let boxes = self.obstacles.tree().search(end, entry, |item, bound| {
+        let boxes = self.obstacles.tree().visit_by_bound(end, entry, |item, bound| {
             let obstacle = self.obstacle_of_item(item);
             let (id, first) = (obstacle.id, stop.map_or(ObstacleId(0), |(first, _)| first));
             // A bound of 0 excludes nothing, because the bodies may overlap.
@@ -174,12 +175,12 @@ impl Among<'_> {
             let found = self.clearance_of(obstacle, direction, upper.max(0.0));
             let found = found.map_err(|e| e.of_obstacle(id))?;
             lower = lower.min(found.distance().unwrap_or(0.0));
-            if (found.upper(), id) < (upper, first) {
-                (stop, upper) = (Some((id, found)), found.upper());
+            if (found.upper_bound(), id) < (upper, first) {
+                (stop, upper) = (Some((id, found)), found.upper_bound());
             }
             Ok::<_, QueryError>(upper.max(0.0))
         })?;
-        Ok(ClearanceAmong { lower, stop, steps: AmongSteps { boxes, bodies } })
+        Ok(SceneClearance { lower, stop, steps: SceneSteps { boxes, bodies } })
     }
 
     /// Computes the clearance of an obstacle. If it is not below the limit, any answer that is not below it may be
@@ -206,7 +207,7 @@ fn clearance_below(cast: &Cast<'_, Solid>, limit: f64) -> Result<Clearance<Solid
     if limit == f64::INFINITY || cast.tolerance() > 0.0 {
         return cast.clearance();
     }
-    let margin = SEARCH_MARGIN * cast.scene(0.0).noise / cast.setting.length;
+    let margin = SEARCH_MARGIN * cast.scene_with_tolerance(0.0).noise / cast.setting.length;
     let search_end = cast.options().before.unwrap_or(f64::INFINITY).min(limit + margin);
     cast.with_options(cast.options().with_before(search_end))?.clearance()
 }

@@ -10,11 +10,11 @@ use glam::DVec3;
 use super::boxes::{self, Sweep};
 use super::obstacles::Obstacle;
 use super::proof::{
-    AmongProof, ApartProof, ClearanceProof, NearbyProof, NearestProof, PassedProof,
+    ApartProof, ClearanceProof, NearbyProof, NearestProof, ObstacleClearanceProof, SceneProof,
     claimed_distance,
 };
-use super::{Among, ByKind};
-use colltrans_convex::answer::{CertificateError, Clearance, WhyFree};
+use super::{ByKind, SceneQuery};
+use colltrans_convex::answer::{CertificateError, Clearance, FreeReason};
 use colltrans_convex::body::ObstacleId;
 use colltrans_convex::cast::{Cast, verified_overlap};
 use colltrans_convex::setting::{check_direction, check_length};
@@ -22,9 +22,10 @@ use colltrans_kernel::noise::Noise;
 use colltrans_solid::cast::StartProof;
 use colltrans_solid::kinds::AnyNear;
 
-impl Among<'_> {
-    /// Checks a proof against all obstacles. Returns the difference of the bounds that it proves, of the least distance
-    /// or of the translation at which the body is stopped. Returns 0 if there is only one bound.
+impl SceneQuery<'_> {
+    /// Checks a proof against all obstacles. Returns the proven upper bound minus the lower bound, of the least
+    /// distance or of the translation at which the body is stopped. Returns 0 for a proof of [`SceneQuery::within`], if
+    /// nothing stops the body, or if it overlaps an obstacle.
     ///
     /// Each obstacle that is not ignored is checked by its box, which is computed again, or by its own proof, as
     /// [`Pair::verify`](colltrans_convex::Pair::verify) and [`Cast::verify`] do. The options must be those of the
@@ -33,11 +34,11 @@ impl Among<'_> {
     ///
     /// # Errors
     /// Returns the first claim that is not proven, with its obstacle.
-    pub fn verify<'p>(&self, proof: impl Into<AmongProof<'p>>) -> Result<f64, CertificateError> {
+    pub fn verify<'p>(&self, proof: impl Into<SceneProof<'p>>) -> Result<f64, CertificateError> {
         match proof.into() {
-            AmongProof::Nearest(proof) => self.verify_nearest(proof),
-            AmongProof::Nearby(proof) => self.verify_nearby(proof),
-            AmongProof::Clearance(proof) => self.verify_clearance(proof),
+            SceneProof::Nearest(proof) => self.verify_nearest(proof),
+            SceneProof::Nearby(proof) => self.verify_nearby(proof),
+            SceneProof::Clearance(proof) => self.verify_clearance(proof),
         }
     }
 
@@ -152,7 +153,7 @@ impl Among<'_> {
         let proven = match (self.pair_with_obstacle(one)?, near) {
             (ByKind::Convex(pair), ByKind::Convex(near)) => pair.verify(near),
             (ByKind::Solid(pair), ByKind::Solid(near)) => pair.verify(near),
-            _ => Err(CertificateError::Start),
+            _ => Err(CertificateError::StartClaim),
         };
         proven.map_err(|e| e.of_obstacle(id))?;
         Ok(near.distance())
@@ -170,7 +171,7 @@ impl Among<'_> {
         let proven = match (self.pair_with_obstacle(one)?, claim) {
             (ByKind::Convex(pair), ByKind::Convex(plane)) => pair.verify(plane),
             (ByKind::Solid(pair), ByKind::Solid(certificate)) => pair.verify(certificate),
-            _ => Err(CertificateError::Start),
+            _ => Err(CertificateError::StartClaim),
         };
         proven.map_err(|e| e.of_obstacle(one.id))?;
         Ok(claimed_distance(claim))
@@ -181,7 +182,7 @@ impl Among<'_> {
     fn verify_passed(
         &self,
         one: &Obstacle,
-        claim: &PassedProof,
+        claim: &ObstacleClearanceProof,
         direction: DVec3,
     ) -> Result<[f64; 2], CertificateError> {
         match (self.cast_with_obstacle(one, direction)?, claim) {
@@ -191,13 +192,13 @@ impl Among<'_> {
             (ByKind::Solid(cast), ByKind::Solid(certificate)) => {
                 cast.verify(certificate)?;
                 let overlaps = matches!(certificate.start, StartProof::Overlapping(_));
-                if overlaps && certificate.aim(cast.options()).is_none() {
+                if overlaps && certificate.search_aim(cast.options()).is_none() {
                     return Ok([f64::NEG_INFINITY; 2]);
                 }
                 let upper = certificate.stop.map_or(f64::INFINITY, |stop| stop.shrunk_distance);
                 Ok([certificate.lower, upper])
             }
-            _ => Err(CertificateError::Start),
+            _ => Err(CertificateError::StartClaim),
         }
     }
 }
@@ -224,28 +225,29 @@ fn verify_convex_clearance(
                 Err(CertificateError::Bound { proven, claimed: *distance })
             }
         }
-        Clearance::Free(WhyFree::Separated(separated)) => {
+        Clearance::Free(FreeReason::Separated(separated)) => {
             cast.verify(&separated.certificate)?;
             Ok(NEVER)
         }
-        Clearance::Free(WhyFree::Behind(last)) => {
+        Clearance::Free(FreeReason::Behind(last)) => {
             let certificate = &last.certificate;
             cast.reversed().verify(certificate)?;
             let is_behind = certificate.lower >= -certificate.rounding;
-            if is_behind { Ok(NEVER) } else { Err(CertificateError::Start) }
+            if is_behind { Ok(NEVER) } else { Err(CertificateError::StartClaim) }
         }
-        Clearance::Free(WhyFree::Slides(grazing)) => {
+        Clearance::Free(FreeReason::Slides(grazing)) => {
             let proven = verified_overlap(grazing.separating_direction, cast)?;
             let noise: Noise = cast.setting.noise();
-            let most = cast.options.graze_tolerance.max(noise.touching()) + 2.0 * noise.point();
-            if proven <= most { Ok(NEVER) } else { Err(CertificateError::Start) }
+            let most = cast.options.graze_tolerance.max(noise.touching_distance())
+                + 2.0 * noise.point_error();
+            if proven <= most { Ok(NEVER) } else { Err(CertificateError::StartClaim) }
         }
         Clearance::Overlapping(ends) => {
             let behind = [(cast, &ends.first), (&cast.reversed(), &ends.last)];
             for (cast, contact) in behind {
                 cast.verify(&contact.certificate)?;
                 if contact.certificate.upper >= 0.0 {
-                    return Err(CertificateError::Start);
+                    return Err(CertificateError::StartClaim);
                 }
             }
             Ok([f64::NEG_INFINITY; 2])

@@ -114,7 +114,7 @@ impl AnyClearance {
     /// motion is free.
     #[doc(hidden)]
     #[inline]
-    pub fn upper(&self) -> f64 {
+    pub fn upper_bound(&self) -> f64 {
         match self {
             Self::Convex(Clearance::Blocked { contact, .. }) => contact.certificate.upper,
             Self::Solid(Clearance::Blocked { contact, .. }) => contact.translation.upper,

@@ -38,7 +38,7 @@ pub use body::{AsSolid, Shell, ShellKind, ShrinkReport, Solid, SolidError, Solid
 #[doc(hidden)]
 pub use cast::SolidScene;
 pub use cast::{
-    NoGrazing, SolidCast, SolidFree, SolidMeeting, SolidOptions, SolidOverlap, StartOverlap,
+    NoGrazing, SolidCast, SolidFree, SolidIntersection, SolidOptions, SolidOverlap, StartOverlap,
 };
 pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
 #[doc(hidden)]

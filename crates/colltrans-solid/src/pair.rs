@@ -13,16 +13,17 @@ use glam::DVec3;
 use crate::body::{AsSolid, Solid};
 use crate::cast::tolerance::least_tolerance_from;
 use crate::cast::{Claim, Cover};
+use crate::solve::nearest::search::{DistanceSearch, SearchEnd, proven_bound};
 #[cfg(feature = "serde")]
-use crate::solve::nearest::points_of;
-use crate::solve::nearest::search::{Search, Until, proven_bound};
+use crate::solve::nearest::weighted_points;
 use crate::solve::nearest::{
-    Apart, Axes, SolidGap, SolidNear, Spot, distance_of, find_common_point, shared_points, triangle,
+    Apart, Axes, NearestPoints, SolidGap, SolidNear, distance_of, find_common_point, shared_points,
+    triangle,
 };
 use crate::solve::overlap::{is_touch, nested_shell};
-use crate::solve::scene::Scene;
+use crate::solve::scene::PairFrame;
 use crate::solve::steps::SolidSteps;
-use colltrans_convex::answer::{CertificateError, Distance, Within, are_weights, checked_as};
+use colltrans_convex::answer::{CertificateError, Distance, Within, are_weights, impl_from_proofs};
 use colltrans_convex::body::{Features, Placed};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::pair::{Pair, PairBody};
@@ -50,7 +51,7 @@ pub struct DistanceCertificate {
 
 impl DistanceCertificate {
     /// Returns a proof of the upper bound only; the lower bound is 0.
-    pub fn of_near(near: SolidNear) -> Self {
+    pub fn from_near(near: SolidNear) -> Self {
         Self { lower: 0.0, near, cover: Cover::default() }
     }
 }
@@ -65,7 +66,7 @@ pub enum SolidPairProof<'a> {
     Near(&'a SolidNear),
 }
 
-checked_as!(SolidPairProof { Distance(DistanceCertificate), Near(SolidNear) });
+impl_from_proofs!(SolidPairProof { Distance(DistanceCertificate), Near(SolidNear) });
 
 /// The answer of [`SolidPair::overlap_depth`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,13 +87,13 @@ pub struct OverlapDepth {
 impl Cover<Apart> {
     /// Returns the claim of each entry with its facets, or `None` if the cover does not fit the bodies.
     pub fn claims(&self, pair: &Pair<'_, Solid>) -> Option<Vec<Claim<Apart>>> {
-        self.claims_of([pair.moving(), pair.fixed()])
+        self.claims_between([pair.moving(), pair.fixed()])
     }
 }
 
 /// Result of a search for the nearest facets.
 struct NearestFacets {
-    spot: Option<Spot>,
+    spot: Option<NearestPoints>,
     /// Lower bound on the distance of all facets.
     lower: f64,
     /// Cover of all pairs of nodes, if a proof was requested and the lower bound is positive.
@@ -101,7 +102,7 @@ struct NearestFacets {
 }
 
 /// Data for a proof: points of the bodies, and a cover of all pairs of facets if the bodies are apart.
-pub struct Unproven {
+pub struct ProofInput {
     near: SolidNear,
     cover: Option<Cover<Apart>>,
 }
@@ -157,23 +158,26 @@ pub trait SolidPair<'a>: Sized {
 #[doc(hidden)]
 pub trait SolidPairSearch {
     /// Computes the distance, with the data for a proof if `prove` is set.
-    fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError>;
+    fn distance_with_proof_input(
+        &self,
+        prove: bool,
+    ) -> Result<(Distance<Solid>, ProofInput), QueryError>;
 
     /// Builds the proof from the data of a search. Its lower bound is the one that the cover proves, or 0 if there is
     /// no cover or it proves nothing.
-    fn prove(&self, found: Unproven) -> Result<DistanceCertificate, QueryError>;
+    fn prove_lower_bound(&self, found: ProofInput) -> Result<DistanceCertificate, QueryError>;
 
     /// Computes [`Pair::within_counted`], with the data for a proof if `prove` is set.
-    fn decide(
+    fn within_with_proof_input(
         &self,
         length: f64,
         prove: bool,
-    ) -> Result<((Within<Solid>, SolidSteps), Unproven), QueryError>;
+    ) -> Result<((Within<Solid>, SolidSteps), ProofInput), QueryError>;
 
     /// Returns points of the moving and of the fixed body, rounded, in world coordinates, whose distance `near`
     /// claims.
     #[cfg(feature = "serde")]
-    fn points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError>;
+    fn witness_points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError>;
 
     /// Checks whether a shell of one body lies inside the other one. The surfaces of the bodies must not cross.
     fn is_nested(&self) -> Result<bool, QueryError>;
@@ -189,8 +193,8 @@ impl<'a> SolidPair<'a> for Pair<'a, Solid> {
     }
 
     fn certified_distance(&self) -> Result<(Distance<Solid>, DistanceCertificate), QueryError> {
-        let (mut distance, found) = self.ask(true)?;
-        let proof = self.prove(found)?;
+        let (mut distance, found) = self.distance_with_proof_input(true)?;
+        let proof = self.prove_lower_bound(found)?;
         distance.lower = proof.lower;
         distance.gap = (proof.lower > 0.0).then_some(SolidGap { gap: proof.lower });
         Ok((distance, proof))
@@ -200,11 +204,11 @@ impl<'a> SolidPair<'a> for Pair<'a, Solid> {
         &self,
         length: f64,
     ) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError> {
-        let ((answer, _), found) = self.decide(length, true)?;
+        let ((answer, _), found) = self.within_with_proof_input(length, true)?;
         if found.cover.is_none() {
             return Ok((answer, None));
         }
-        let proof = self.prove(found)?;
+        let proof = self.prove_lower_bound(found)?;
         let gap = proof.lower;
         let answer = match answer {
             Within::Closer(near) => Within::Closer(near),
@@ -231,55 +235,60 @@ impl<'a> SolidPair<'a> for Pair<'a, Solid> {
 
 impl SolidPairSearch for Pair<'_, Solid> {
     #[inline]
-    fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError> {
+    fn distance_with_proof_input(
+        &self,
+        prove: bool,
+    ) -> Result<(Distance<Solid>, ProofInput), QueryError> {
         let scene = pair_scene(self)?;
-        let nearest = search_nearest(self, &scene, Until::LEAST, prove);
+        let nearest = search_nearest(self, &scene, SearchEnd::LEAST, prove);
         let distance = distance_answer(self, &scene, &nearest);
         let cover = nearest.cover.filter(|_| distance.lower > 0.0);
-        Ok((distance, Unproven { near: distance.near, cover }))
+        Ok((distance, ProofInput { near: distance.near, cover }))
     }
 
     #[inline]
-    fn prove(&self, found: Unproven) -> Result<DistanceCertificate, QueryError> {
-        let Unproven { near, cover } = found;
-        let Some(cover) = cover else { return Ok(DistanceCertificate::of_near(near)) };
+    fn prove_lower_bound(&self, found: ProofInput) -> Result<DistanceCertificate, QueryError> {
+        let ProofInput { near, cover } = found;
+        let Some(cover) = cover else { return Ok(DistanceCertificate::from_near(near)) };
         Ok(match least_proven_distance(&pair_scene(self)?, &cover) {
             Ok(lower) if lower > 0.0 => DistanceCertificate { lower, near, cover },
-            _ => DistanceCertificate::of_near(near),
+            _ => DistanceCertificate::from_near(near),
         })
     }
 
-    fn decide(
+    fn within_with_proof_input(
         &self,
         length: f64,
         prove: bool,
-    ) -> Result<((Within<Solid>, SolidSteps), Unproven), QueryError> {
+    ) -> Result<((Within<Solid>, SolidSteps), ProofInput), QueryError> {
         check_length(length)?;
         let scene = pair_scene(self)?;
-        let until = Until {
+        let until = SearchEnd {
             // Pairs beyond this distance count as farther. The margin exceeds the amount by which a bound may be
             // lowered.
             beyond: length + 0.125 * scene.noise,
-            enough: length - triangle::LENGTH * scene.noise,
+            enough: length - triangle::LENGTH_NOISES * scene.noise,
         };
         let NearestFacets { spot, lower, cover, mut steps } =
             search_nearest(self, &scene, until, prove && until.beyond.is_finite());
-        let near = spot.map(|spot| spot.near(&scene));
+        let near = spot.map(|spot| spot.to_upper_bound(&scene));
         let meeting = || nested_shell(&scene).map(SolidNear::Meeting);
         let closer = near.map_or_else(meeting, |near| (near.distance() <= length).then_some(near));
         if let Some(near) = closer {
-            return Ok(((Within::Closer(near), steps), Unproven { near, cover: None }));
+            return Ok(((Within::Closer(near), steps), ProofInput { near, cover: None }));
         }
         if lower > length {
-            let near = near.unwrap_or_else(|| Spot::of(&scene, [0, 0]).near(&scene));
+            let near = near.unwrap_or_else(|| {
+                NearestPoints::from_triangles(&scene, [0, 0]).to_upper_bound(&scene)
+            });
             let answer = Within::Farther(SolidGap { gap: lower });
-            return Ok(((answer, steps), Unproven { near, cover }));
+            return Ok(((answer, steps), ProofInput { near, cover }));
         }
-        let (distance, found) = self.ask(prove)?;
+        let (distance, found) = self.distance_with_proof_input(prove)?;
         steps += distance.steps;
         let answer = if distance.upper <= length {
             let near = distance.near;
-            return Ok(((Within::Closer(near), steps), Unproven { near, cover: None }));
+            return Ok(((Within::Closer(near), steps), ProofInput { near, cover: None }));
         } else if distance.lower > length {
             Within::Farther(SolidGap { gap: distance.lower })
         } else {
@@ -290,13 +299,13 @@ impl SolidPairSearch for Pair<'_, Solid> {
 
     #[cfg(feature = "serde")]
     #[inline]
-    fn points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError> {
+    fn witness_points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError> {
         let scene = pair_scene(self)?;
         let origin = self.bodies.translations[0];
         let points = match *near {
             SolidNear::Meeting(place) => shared_points(&scene, place),
             SolidNear::Points { triangles, weights, .. } => {
-                points_of(&scene, triangles, weights.map(DVec3::from_array))
+                weighted_points(&scene, triangles, weights.map(DVec3::from_array))
             }
         };
         Ok(points.map(|point| point + origin))
@@ -312,14 +321,14 @@ impl PairBody for Solid {
     type PairProof<'p> = SolidPairProof<'p>;
 
     fn distance(pair: &Pair<'_, Self>) -> Result<Distance<Self>, QueryError> {
-        Ok(pair.ask(false)?.0)
+        Ok(pair.distance_with_proof_input(false)?.0)
     }
 
     fn within(
         pair: &Pair<'_, Self>,
         length: f64,
     ) -> Result<(Within<Self>, SolidSteps), QueryError> {
-        Ok(pair.decide(length, false)?.0)
+        Ok(pair.within_with_proof_input(length, false)?.0)
     }
 
     fn verify_pair(
@@ -327,7 +336,7 @@ impl PairBody for Solid {
         proof: SolidPairProof<'_>,
     ) -> Result<f64, CertificateError> {
         // The scene has a direction, which the proof does not use.
-        let scene = pair_scene(pair).map_err(|_| CertificateError::Start)?;
+        let scene = pair_scene(pair).map_err(|_| CertificateError::StartClaim)?;
         match proof {
             SolidPairProof::Near(near) => verify_near(&scene, near),
             SolidPairProof::Distance(certificate) => {
@@ -340,43 +349,43 @@ impl PairBody for Solid {
 }
 
 /// Returns the nominal bodies in a common frame; its direction `z` has no meaning.
-fn pair_scene<'a>(pair: &Pair<'a, Solid>) -> Result<Scene<'a>, QueryError> {
-    let setting = Setting::of(pair.bodies, DVec3::Z)?;
-    Ok(Scene::new(&setting, [0.0; 2], 0.0))
+fn pair_scene<'a>(pair: &Pair<'a, Solid>) -> Result<PairFrame<'a>, QueryError> {
+    let setting = Setting::from_bodies(pair.bodies, DVec3::Z)?;
+    Ok(PairFrame::new(&setting, [0.0; 2], 0.0))
 }
 
 /// Searches for the nearest facets, and records the cover if `prove` is set.
 fn search_nearest(
     pair: &Pair<'_, Solid>,
-    scene: &Scene,
-    until: Until,
+    scene: &PairFrame,
+    until: SearchEnd,
     prove: bool,
 ) -> NearestFacets {
     let mut cuts = HashMap::new();
-    let mut search = Search::new(scene, until, |nodes, reason| {
+    let mut search = DistanceSearch::new(scene, until, |nodes, reason| {
         if prove {
             cuts.insert(nodes, reason);
         }
     });
-    let ((found, lower), steps) = (search.run(), search.steps);
-    // After an early end some pairs have no reason, and there is no bound.
+    let ((found, lower), steps) = (search.find_nearest(), search.steps);
+    // If the search ended early, some pairs have no reason, and the bound is 0.
     let cover = (prove && lower > 0.0).then(|| Cover::new([pair.moving(), pair.fixed()], &cuts));
-    NearestFacets { spot: found.map(Spot::from), lower, cover, steps }
+    NearestFacets { spot: found.map(NearestPoints::from), lower, cover, steps }
 }
 
 /// Returns the distance of the bodies from the result for their surfaces.
 fn distance_answer(
     pair: &Pair<'_, Solid>,
-    scene: &Scene,
+    scene: &PairFrame,
     nearest: &NearestFacets,
 ) -> Distance<Solid> {
     let origin = pair.bodies.translations[0];
     let mut steps = nearest.steps;
     let place = find_common_point(scene, nearest.lower, &mut steps);
-    let spot = nearest.spot.unwrap_or_else(|| Spot::of(scene, [0, 0]));
+    let spot = nearest.spot.unwrap_or_else(|| NearestPoints::from_triangles(scene, [0, 0]));
     let (near, points) = match place {
         Some(place) => (SolidNear::Meeting(place), shared_points(scene, place)),
-        None => (spot.near(scene), spot.points(scene)),
+        None => (spot.to_upper_bound(scene), spot.witness_points(scene)),
     };
     let lower = if place.is_some() { 0.0 } else { nearest.lower };
     let spot = (lower > 0.0).then_some(spot);
@@ -399,11 +408,11 @@ fn distance_answer(
 /// # Errors
 /// Returns [`CertificateError::Cover`] if the cover does not fit the bodies, or for an entry that proves no positive
 /// distance or is marked as examined without being a pair of leaves.
-fn least_proven_distance(scene: &Scene, cover: &Cover<Apart>) -> Result<f64, CertificateError> {
+fn least_proven_distance(scene: &PairFrame, cover: &Cover<Apart>) -> Result<f64, CertificateError> {
     let bodies = [scene.moving.solid, scene.fixed.solid];
     let axes = Axes::new(scene);
     let mut least = f64::INFINITY;
-    let walked = cover.walk(bodies, |_, nodes, reason| {
+    let walked = cover.visit_entries(bodies, |_, nodes, reason| {
         let leaf = |k: usize| bodies[k].nodes()[nodes[k] as usize].is_leaf();
         if reason == Apart::Examined && !(leaf(0) && leaf(1)) {
             return false;
@@ -416,10 +425,10 @@ fn least_proven_distance(scene: &Scene, cover: &Cover<Apart>) -> Result<f64, Cer
 }
 
 /// Verifies the upper bound, and returns the distance of the points that prove it.
-fn verify_near(scene: &Scene, near: &SolidNear) -> Result<f64, CertificateError> {
+fn verify_near(scene: &PairFrame, near: &SolidNear) -> Result<f64, CertificateError> {
     match *near {
         SolidNear::Meeting(place) if is_touch(scene, place) => Ok(0.0),
-        SolidNear::Meeting(_) => Err(CertificateError::Start),
+        SolidNear::Meeting(_) => Err(CertificateError::StartClaim),
         SolidNear::Points { triangles, weights, distance: claimed } => {
             if let Some(&weights) = weights.iter().find(|weights| !are_weights(&weights[..])) {
                 return Err(CertificateError::Weights { weights });
@@ -437,7 +446,10 @@ fn verify_near(scene: &Scene, near: &SolidNear) -> Result<f64, CertificateError>
 }
 
 /// Verifies the lower bound, and returns the distance that the cover proves.
-fn verify_cover(scene: &Scene, certificate: &DistanceCertificate) -> Result<f64, CertificateError> {
+fn verify_cover(
+    scene: &PairFrame,
+    certificate: &DistanceCertificate,
+) -> Result<f64, CertificateError> {
     let DistanceCertificate { lower: claimed, near, cover } = certificate;
     if *claimed == 0.0 && cover.is_empty() {
         return Ok(0.0);
@@ -448,7 +460,7 @@ fn verify_cover(scene: &Scene, certificate: &DistanceCertificate) -> Result<f64,
         return Err(CertificateError::Bound { proven, claimed: *claimed });
     }
     if nested_shell(scene).is_some() {
-        return Err(CertificateError::Start);
+        return Err(CertificateError::StartClaim);
     }
     Ok(proven)
 }

@@ -85,7 +85,7 @@ fn screws_respect_rise_and_minimum_gap() {
     let outcome = |told: Value| told["record"]["outcome"].as_str().map(str::to_owned);
     let mut question = asked("motion", &rise(0.5), 1.5, 0.0);
     assert_eq!(outcome(ask(&mut state, &question, "")).as_deref(), Some("free"));
-    question["keep"] = json!(0.2);
+    question["min_gap"] = json!(0.2);
     assert_eq!(outcome(ask(&mut state, &question, "")).as_deref(), Some("contact"));
     question["moving_motion"] = rise(50.0);
     assert_eq!(outcome(ask(&mut state, &question, "")).as_deref(), Some("free"));

@@ -3,7 +3,7 @@
 //! `cargo run --release -p colltrans --example clearance`
 
 use colltrans::glam::DVec3;
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, WhyFree};
+use colltrans::{Cast, Clearance, ConvexPolyhedron, FreeReason, Pose};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let drawer = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(4.0, 5.0, 2.0))?;
@@ -22,11 +22,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     let there = contact.pose_before(&cast)?.translation();
                     format!("blocked after {distance}, at {there}")
                 }
-                Clearance::Free(WhyFree::Slides(grazing)) => {
+                Clearance::Free(FreeReason::Slides(grazing)) => {
                     format!("slides, overlap {:e}", grazing.overlap)
                 }
-                Clearance::Free(WhyFree::Behind(_)) => "free, moves away".into(),
-                Clearance::Free(WhyFree::Separated(separated)) => {
+                Clearance::Free(FreeReason::Behind(_)) => "free, moves away".into(),
+                Clearance::Free(FreeReason::Separated(separated)) => {
                     format!("free, passes by {}", separated.certificate.margin)
                 }
                 Clearance::Overlapping(_) => "overlaps now".into(),

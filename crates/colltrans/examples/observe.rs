@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for _ in 0..1000 {
         cast.first_contact_observed(&mut clock)?;
     }
-    for (phase, nanoseconds) in clock.profile().phases() {
+    for (phase, nanoseconds) in clock.profile().phase_times() {
         println!("{phase:<20} {:>6.0} ns", nanoseconds / 1000.0);
     }
     Ok(())

@@ -6,10 +6,10 @@
 //!
 //! `coll = min { t : P + t d meets Q }`
 //!
-//! with the contact normal, bounds that enclose it, a contact point on each body, and the vertices, edges or
-//! faces in contact. If there is no contact, it proves that the bodies never meet. `t` ranges over all real
-//! numbers. A negative value is a contact behind the moving body, or an overlap at the start. Every answer
-//! has a proof, which can be checked without trust in the search.
+//! together with the contact normal, bounds that enclose `coll`, a contact point on each body, and the
+//! vertices, edges or faces in contact. If there is no contact, the cast proves that the bodies never meet.
+//! `t` ranges over all real numbers. A negative value is a contact behind the moving body, or an overlap at
+//! the start. Every answer has a proof, which can be checked without trust in the search.
 //!
 //! ```
 //! use colltrans::glam::DVec3;
@@ -73,9 +73,9 @@
 //! | [`Pair::depth`] | shortest translation that separates the bodies | [`Depth`] |
 //! | [`motion::MotionCast::first_contact`] | time of the first contact of rotating bodies | [`motion::MotionOutcome`] |
 //! | [`motion::path::PathCast::first_contact`] | first contact of bodies that joints carry | [`motion::path::PathOutcome`] |
-//! | [`Among::nearest`] | nearest of many bodies | [`Nearest`] |
-//! | [`Among::within`] | bodies that are closer than a length | [`Nearby`] |
-//! | [`Among::clearance`] | free travel in a scene, and the body that limits it | [`ClearanceAmong`] |
+//! | [`SceneQuery::nearest`] | nearest of many bodies | [`Nearest`] |
+//! | [`SceneQuery::within`] | bodies that are closer than a length | [`Nearby`] |
+//! | [`SceneQuery::clearance`] | free travel in a scene, and the body that limits it | [`SceneClearance`] |
 //!
 //! Convex bodies and solids have the same queries and types of answers, for example `Clearance<Solid>`, with
 //! different types of contacts. The directional depth and trackers exist only for convex bodies, the [least
@@ -127,22 +127,23 @@
 //! pierces. It runs alone, or after the *collision translation algorithm*, a convex minimisation over pairs
 //! of planar sections of the bodies. Reference: Mirolo, Carpin and Pagello, "Incremental Convex Minimization
 //! for Computing Collision Translations of Convex Polyhedra", IEEE Transactions on Robotics 23(3), 2007,
-//! which comments call *the paper*. Both end in the same portal. Its plane is the lower bound, its corners
-//! are the upper one. If rounding prevents a decision on which side of an edge the line passes, exact
-//! integers decide.
+//! which comments call *the paper*. Both methods end in the same portal. The plane of this portal gives the
+//! lower bound, its corners give the upper bound. If rounding prevents a decision on which side of an edge
+//! the line passes, exact integers decide.
 //!
 //! # Features
 //!
-//! `solid`, `motion`, `removal`, `scene` and `keep` (casts with a minimum gap) are on by default. Without them the crate
-//! is the convex core alone: no other crate of the project but `colltrans-kernel` and `colltrans-convex` is compiled.
-//! `serde` and `json` bring all questions.
+//! `solid`, `motion`, `removal`, `scene` and `min_gap` (casts with a minimum gap) are on by default. Without
+//! them the crate is the convex core alone, and of the project's crates only `colltrans-kernel` and
+//! `colltrans-convex` are compiled. `serde` enables `solid`, `motion`, `removal` and `scene`; `json` enables
+//! `serde`.
 //!
 //! # Crates
 //!
 //! The code is in several crates, each of which uses only the previous ones: `colltrans-kernel` (numbers,
 //! predicates, poses), `colltrans-convex` (convex bodies), `colltrans-solid`, then `colltrans-removal`
-//! ([`free`], [`ways`]), `colltrans-scene` ([`Among`], [`FixedRotations`]) and `colltrans-motion`
-//! ([`motion`]), and `colltrans-proof` (files). [`solid`] contains items for solids only.
+//! ([`free`], [`ways`]), `colltrans-scene` ([`SceneQuery`], [`FixedRotations`]) and `colltrans-motion`
+//! ([`motion`]), and `colltrans-proof` (proof files, `record`). [`solid`] contains items for solids only.
 
 #[cfg(feature = "motion")]
 pub mod motion;
@@ -153,12 +154,12 @@ pub mod solid;
 pub use colltrans_convex::{
     Aabb, Body, Bounded, BuildError, Cast, CastBody, CentralCast, Certificate, CertificateError,
     Clearance, Contact, ContactRange, ConvexPolyhedron, ConvexityDefect, Depth, DirectionalDepth,
-    Distance, Enclosure, FaceId, Feature, Features, Focus, Grazing, HalfEdge, InputFacet,
-    InputVertex, Intersection, MAX_MAGNITUDE, MIN_MAGNITUDE, NearPoints, ObstacleId, OffsetReport,
-    Options, Outcome, OverlapAhead, Pair, PairBody, PairProof, Placed, PlaneGap, Pose, PoseError,
-    Proof, QueryError, Separated, Separation, Solver, Stalled, StartedFrom, Steps, TopologyError,
-    Tracker, UnknownName, VertexId, VertexPair, WhyFree, Within, WitnessPoints, convexity_defect,
-    cta, observe,
+    Distance, Enclosure, FaceId, Feature, Features, Focus, FreeReason, Grazing, HalfEdge,
+    InputFacet, InputVertex, Intersection, MAX_MAGNITUDE, MIN_MAGNITUDE, NearPoints, ObstacleId,
+    OffsetReport, Options, Outcome, OverlapAhead, Pair, PairBody, PairProof, Placed, PlaneGap,
+    Pose, PoseError, Proof, QueryError, Separated, Separation, Solver, Stalled, StartedFrom, Steps,
+    TopologyError, Tracker, UnknownName, VertexId, VertexPair, Within, WitnessPoints,
+    convexity_defect, cta, observe,
 };
 // Only the function, because a module of the core has the same name.
 #[doc(inline)]
@@ -179,16 +180,16 @@ pub use colltrans_proof::{
 };
 #[cfg(feature = "removal")]
 #[doc(inline)]
-pub use colltrans_removal::{free, ways};
+pub use colltrans_removal as removal;
 #[cfg(feature = "scene")]
 #[doc(inline)]
 pub use colltrans_scene::{
-    Among, AmongProof, AmongSteps, ApartProof, ClearanceAmong, ClearanceProof, Nearby, NearbyProof,
-    Nearest, NearestProof, Obstacles, PassedProof, UnknownObstacle,
+    ApartProof, ClearanceProof, Nearby, NearbyProof, Nearest, NearestProof, ObstacleClearanceProof,
+    Obstacles, SceneClearance, SceneProof, SceneQuery, SceneSteps, UnknownObstacle,
 };
 #[cfg(feature = "scene")]
 #[doc(inline)]
-pub use colltrans_scene::{Approach, FixedRotations};
+pub use colltrans_scene::{DirectionMap, FixedRotations};
 #[cfg(feature = "solid")]
 #[doc(inline)]
 pub use colltrans_solid::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind, Solid};

@@ -12,7 +12,7 @@
 //! // A plank of length 2 makes half a turn about its center. A post is 0.8 to the side.
 //! let plank = ConvexPolyhedron::cuboid(DVec3::new(-1.0, -0.1, 0.0), DVec3::new(1.0, 0.1, 0.1))?;
 //! let post = ConvexPolyhedron::cuboid(DVec3::new(-0.1, 0.8, -1.0), DVec3::new(0.1, 1.0, 1.0))?;
-//! let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::PI)?;
+//! let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::PI)?;
 //!
 //! let cast = MotionCast::new(plank.along(&turn), post.at(Pose::IDENTITY))?;
 //! let MotionOutcome::Contact(contact) = cast.first_contact()? else { panic!("no contact") };

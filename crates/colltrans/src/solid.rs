@@ -12,7 +12,7 @@ pub use colltrans_solid::proof::{
 #[doc(inline)]
 pub use colltrans_solid::{
     AsSolid, NoGrazing, Overlap, OverlapDepth, Shell, ShellKind, ShrinkReport, SolidCast,
-    SolidContact, SolidError, SolidFree, SolidGap, SolidMeeting, SolidNear, SolidOptions,
+    SolidContact, SolidError, SolidFree, SolidGap, SolidIntersection, SolidNear, SolidOptions,
     SolidOverlap, SolidPair, SolidReport, SolidSteps, StartOverlap, Workspace,
 };
 #[doc(hidden)]

@@ -289,7 +289,7 @@ class Cast:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
-        keep: float = 0.0,
+        min_gap: float = 0.0,
         solver: _Solver = "auto",
     ) -> Cast: ...
     def first_contact(self) -> _Outcome: ...
@@ -315,7 +315,7 @@ class Cast:
     @property
     def graze_tolerance(self) -> float: ...
     @property
-    def keep(self) -> float: ...
+    def min_gap(self) -> float: ...
     @property
     def solver(self) -> _Solver: ...
     def __reduce__(self) -> tuple[Any, Any]: ...
@@ -598,7 +598,7 @@ class SolidCast:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         tolerance: float | None = None,
-        keep: float = 0.0,
+        min_gap: float = 0.0,
         ignore_start_overlaps: bool = False,
     ) -> SolidCast: ...
     def clearance(self) -> _SolidClearance: ...
@@ -613,7 +613,7 @@ class SolidCast:
     @property
     def tolerance(self) -> float: ...
     @property
-    def keep(self) -> float: ...
+    def min_gap(self) -> float: ...
     @property
     def moving(self) -> Solid | ConvexPolyhedron: ...
     @property
@@ -781,7 +781,7 @@ class MotionCast:
         *,
         moving_motion: _Motion = None,
         fixed_motion: _Motion = None,
-        keep: float = 0.0,
+        min_gap: float = 0.0,
         tolerance: float | None = None,
         ignore_start_overlaps: bool = False,
     ) -> MotionCast: ...
@@ -799,7 +799,7 @@ class MotionCast:
     @property
     def fixed_motion(self) -> Motion: ...
     @property
-    def keep(self) -> float: ...
+    def min_gap(self) -> float: ...
     @property
     def tolerance(self) -> float: ...
     @property
@@ -836,7 +836,7 @@ def first_contact(
     moving_motion: _Motion,
     fixed_motion: _Motion = None,
     *,
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     tolerance: float | None = None,
 ) -> FirstContact: ...
 
@@ -865,7 +865,7 @@ def motion_clearance(
     moving_motion: _Motion,
     fixed_motion: _Motion = None,
     *,
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     tolerance: float | None = None,
     ignore_start_overlaps: bool = False,
 ) -> MotionClearance: ...
@@ -898,7 +898,7 @@ class Robot:
         scene: Mapping[str, ConvexPolyhedron | Solid] | None = None,
         *,
         ignore: Sequence[tuple[str, str]] = ...,
-        keep: float = 0.0,
+        min_gap: float = 0.0,
         joints: dict[str, float] = ...,
         columns: Sequence[str] | None = None,
         times: ArrayLike | None = None,
@@ -1048,7 +1048,7 @@ class Obstacles:
         pose: _Pose = None,
         *,
         before: float | None = None,
-        keep: float = 0.0,
+        min_gap: float = 0.0,
         ignore: Iterable[int] = (),
     ) -> ObstacleClearance: ...
     def nearest_many(
@@ -1066,7 +1066,7 @@ class Obstacles:
         poses: ArrayLike | Sequence[Pose],
         *,
         before: float | None = None,
-        keep: float = 0.0,
+        min_gap: float = 0.0,
         ignore: Iterable[int] = (),
         threads: int | None = None,
     ) -> dict[str, NDArray[Any]]: ...
@@ -1151,7 +1151,7 @@ class Tracker:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
-        keep: float = 0.0,
+        min_gap: float = 0.0,
         solver: _Solver = "auto",
     ) -> _Outcome: ...
     def contact_range(
@@ -1163,7 +1163,7 @@ class Tracker:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
-        keep: float = 0.0,
+        min_gap: float = 0.0,
         solver: _Solver = "auto",
     ) -> ContactRange | Separated: ...
     def clearance(
@@ -1175,7 +1175,7 @@ class Tracker:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
-        keep: float = 0.0,
+        min_gap: float = 0.0,
         solver: _Solver = "auto",
     ) -> _Clearance: ...
     def directional_depth(
@@ -1187,7 +1187,7 @@ class Tracker:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
-        keep: float = 0.0,
+        min_gap: float = 0.0,
         solver: _Solver = "auto",
     ) -> DirectionalDepth: ...
     def intersects(
@@ -1199,7 +1199,7 @@ class Tracker:
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
         graze_tolerance: float = 0.0,
-        keep: float = 0.0,
+        min_gap: float = 0.0,
         solver: _Solver = "auto",
     ) -> Intersection: ...
 
@@ -1211,7 +1211,7 @@ def cast(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: float = 0.0,
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     solver: _Solver = "auto",
 ) -> _Outcome: ...
 def contact_range(
@@ -1222,7 +1222,7 @@ def contact_range(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: float = 0.0,
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     solver: _Solver = "auto",
 ) -> ContactRange | Separated: ...
 @overload
@@ -1234,7 +1234,7 @@ def clearance(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: float | None = None,
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     solver: _Solver = "auto",
     tolerance: None = None,
     ignore_start_overlaps: Literal[False] = False,
@@ -1248,7 +1248,7 @@ def clearance(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: None = None,
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     solver: _Solver = "auto",
     tolerance: float | None = None,
     ignore_start_overlaps: bool = False,
@@ -1262,7 +1262,7 @@ def clearance(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: None = None,
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     solver: _Solver = "auto",
     tolerance: float | None = None,
     ignore_start_overlaps: bool = False,
@@ -1275,7 +1275,7 @@ def directional_depth(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: float = 0.0,
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     solver: _Solver = "auto",
 ) -> DirectionalDepth: ...
 @overload
@@ -1287,7 +1287,7 @@ def intersects(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: float | None = None,
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     solver: _Solver = "auto",
     tolerance: None = None,
     ignore_start_overlaps: Literal[False] = False,
@@ -1301,7 +1301,7 @@ def intersects(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: None = None,
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     solver: _Solver = "auto",
     tolerance: float | None = None,
     ignore_start_overlaps: bool = False,
@@ -1315,7 +1315,7 @@ def intersects(
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
     graze_tolerance: None = None,
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     solver: _Solver = "auto",
     tolerance: float | None = None,
     ignore_start_overlaps: bool = False,
@@ -1461,7 +1461,7 @@ def ask_paths(
     paths: list[Any],
     scene: Mapping[str, ConvexPolyhedron | Solid] | None,
     ignore: Sequence[tuple[str, str]],
-    keep: float,
+    min_gap: float,
     joints: dict[str, float],
     columns: Sequence[str] | None,
     times: list[Any] | None,

@@ -502,7 +502,7 @@ def _rounded_area(corners: list[tuple[float, float, float]]) -> tuple[float, flo
 
 
 def _along(normal: Sequence[float], p: Sequence[float], q: Sequence[float]) -> float:
-    """Returns the height of one point above another along a normal, rounded."""
+    """Returns the height of ``q`` above ``p`` along a normal, rounded."""
     return sum(n * (b - a) for n, a, b in zip(normal, p, q, strict=True))
 
 
@@ -569,7 +569,7 @@ def contact(
     proof: Any,
     report: Report,
     which: str,
-    keep: Fraction = _NO_GAP,
+    min_gap: Fraction = _NO_GAP,
 ) -> None:
     """Checks both bounds of a certificate between convex bodies."""
     proof = fields(proof, "normal lower pairs weights upper rounding")
@@ -580,14 +580,14 @@ def contact(
         raise RefusedError(f"{which}: the normal does not point along the direction")
     lower = number(proof["lower"])
     gap = min(fixed.heights(normal)) - max(moving.heights(normal))
-    if not above(gap - lower * along, keep * keep * dot(normal, normal)):
-        proven = float((gap - keep) / along)
+    if not above(gap - lower * along, min_gap * min_gap * dot(normal, normal)):
+        proven = float((gap - min_gap) / along)
         raise RefusedError(f"{which}: the plane proves {proven!r}, not {float(lower)!r}")
-    meet = f"are nearer than {float(keep)!r}" if keep else "meet"
+    meet = f"are nearer than {float(min_gap)!r}" if min_gap else "meet"
     report.holds.append(f"{which}: the bodies {meet} at no translation below {float(lower)!r}")
 
-    noise = _NOISE * (size(moving, fixed) + keep)
-    stated(d, proof, noise, keep)
+    noise = _NOISE * (size(moving, fixed) + min_gap)
+    stated(d, proof, noise, min_gap)
     weights = listed(proof["weights"], 3)
     ends = ends_of(moving, fixed, listed(proof["pairs"], 3))
     corners = [minus(q, p) for p, q in ends]
@@ -596,7 +596,7 @@ def contact(
     off = minus(point, scaled(d, estimate))
     miss = dot(off, off)
     if proof["upper"] is None:
-        if not keep and miss > (_MISS_WIDENED * noise) ** 2:
+        if not min_gap and miss > (_MISS_WIDENED * noise) ** 2:
             raise RefusedError(f"{which}: the witness points miss each other")
         report.unchecked.append(f"{which}: no upper bound is claimed")
         return
@@ -604,11 +604,11 @@ def contact(
     if upper < lower:
         raise RefusedError(f"{which}: the bounds are in the wrong order")
     between = minus(point, scaled(d, upper))
-    if keep and above(keep, dot(between, between)):
+    if min_gap and above(min_gap, dot(between, between)):
         report.holds.append(f"{which}: the bodies are as near at one of at most {float(upper)!r}")
         return
-    if keep > _SLIGHT * noise:
-        raise RefusedError(f"{which}: the witness points are not as near as {float(keep)!r}")
+    if min_gap > _SLIGHT * noise:
+        raise RefusedError(f"{which}: the witness points are not as near as {float(min_gap)!r}")
     # For a slight gap the proof may only show that the bodies meet.
     if miss > (_MISS * noise) ** 2:
         raise RefusedError(f"{which}: the witness points miss each other")
@@ -624,13 +624,13 @@ def contact(
         )
 
 
-def stated(d: Vector, proof: Any, noise: Fraction, keep: Fraction) -> None:
+def stated(d: Vector, proof: Any, noise: Fraction, min_gap: Fraction) -> None:
     """Checks that the stated rounding of a certificate is within limits; it proves nothing."""
     normal, rounding = vector(proof["normal"]), number(proof["rounding"])
     sideways = cross(normal, d)
     share = root_above(dot(sideways, sideways) / dot(d, d))
     most, across = _MOST_STATED
-    slight = 2 * keep if keep <= _SLIGHT * noise else Fraction()
+    slight = 2 * min_gap if min_gap <= _SLIGHT * noise else Fraction()
     limit = (most + across * share) * noise + slight
     if not 0 <= rounding * dot(normal, d) <= limit:
         raise RefusedError(f"rounding does not explain {float(rounding)!r}")
@@ -670,37 +670,37 @@ def shadows_apart(moving: Body, fixed: Body, d: Vector, normal: Vector) -> float
     return float(gap) / math.sqrt(float(dot(level, level)))
 
 
-def never_near(keep: Fraction) -> str:
+def never_near(min_gap: Fraction) -> str:
     """Returns the statement that a plane between the bodies proves."""
-    return f"are never as near as {float(keep)!r}" if keep else "never meet"
+    return f"are never as near as {float(min_gap)!r}" if min_gap else "never meet"
 
 
 def slide(
-    moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction = _NO_GAP
+    moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, min_gap: Fraction = _NO_GAP
 ) -> None:
     """Checks the overlap of the shadows, including the gap, along the direction."""
     claim = fields(claim, "normal overlap")
     normal, overlap = vector(claim["normal"]), number(claim["overlap"])
-    if not are_shadows_apart(moving, fixed, d, normal, keep - overlap):
-        proven = float(keep) - shadows_apart(moving, fixed, d, normal)
+    if not are_shadows_apart(moving, fixed, d, normal, min_gap - overlap):
+        proven = float(min_gap) - shadows_apart(moving, fixed, d, normal)
         raise RefusedError(f"the bodies overlap by {proven!r} there, not {float(overlap)!r}")
     report.holds.append(
         "the bodies slide along each other: seen along the direction they overlap by at most "
-        f"{float(overlap)!r}" + (f", with the gap of {float(keep)!r}" if keep else "")
+        f"{float(overlap)!r}" + (f", with the gap of {float(min_gap)!r}" if min_gap else "")
     )
 
 
 def separation(
-    moving: Body, fixed: Body, d: Vector, proof: Any, report: Report, keep: Fraction = _NO_GAP
+    moving: Body, fixed: Body, d: Vector, proof: Any, report: Report, min_gap: Fraction = _NO_GAP
 ) -> None:
     """Checks a separating plane between convex bodies."""
     proof = fields(proof, "normal margin")
     normal, margin = vector(proof["normal"]), number(proof["margin"])
-    if margin <= keep or not are_shadows_apart(moving, fixed, d, normal, margin):
+    if margin <= min_gap or not are_shadows_apart(moving, fixed, d, normal, margin):
         proven = shadows_apart(moving, fixed, d, normal)
         raise RefusedError(f"the plane proves a margin of {proven!r}, not {float(margin)!r}")
     report.holds.append(
-        f"the bodies {never_near(keep)}: a gap of {float(margin)!r} is between them"
+        f"the bodies {never_near(min_gap)}: a gap of {float(margin)!r} is between them"
     )
 
 
@@ -727,7 +727,7 @@ def overlap_of(value: Any, counts: tuple[int, int], *others: str) -> str:
 
 
 def clearance(
-    moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction = _NO_GAP
+    moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, min_gap: Fraction = _NO_GAP
 ) -> None:
     """Checks the claims of a clearance of solids that do not depend on their trees."""
     claim = fields(claim, "start_overlap certificate", "stop separation")
@@ -753,24 +753,24 @@ def clearance(
         normal, margin = vector(plane["normal"]), number(plane["margin"])
         is_apart = are_shadows_apart(moving, fixed, d, normal, margin)
         proven = shadows_apart(moving, fixed, d, normal)
-        if margin <= keep or (tolerance == 0 and not is_apart):
+        if margin <= min_gap or (tolerance == 0 and not is_apart):
             raise RefusedError(f"the plane proves a margin of {proven!r}, not {float(margin)!r}")
         # A gap of the nominal bodies, if the shrunk bodies have a larger margin.
         gap = margin if is_apart else Fraction(proven) * (1 - 8 * _U)
-        if gap > keep and are_shadows_apart(moving, fixed, d, normal, gap):
+        if gap > min_gap and are_shadows_apart(moving, fixed, d, normal, gap):
             report.holds.append(
-                f"the bodies {never_near(keep)}: a gap of {float(gap)!r} is between them"
+                f"the bodies {never_near(min_gap)}: a gap of {float(gap)!r} is between them"
             )
         if not is_apart:
             report.unchecked.append(f"the margin of the shrunk bodies, {float(margin)!r}")
     if (stop is None) != (certificate["stop"] is None):
         raise RefusedError("the certificate and the claim do not agree about what stops the body")
     stop = None if stop is None else fields(stop, "facets translation")
-    if stop is not None and keep:
+    if stop is not None and min_gap:
         named = listed(stop["facets"], 2)
         at = [whole(k, len(of.facets)) for k, of in zip(named, (moving, fixed), strict=True)]
         translation_of(stop)
-        report.unchecked.append(f"where facets {at[0]} and {at[1]} are {float(keep)!r} apart")
+        report.unchecked.append(f"where facets {at[0]} and {at[1]} are {float(min_gap)!r} apart")
     elif stop is not None:
         facets(moving, fixed, d, stop, tolerance, report)
     if tolerance:
@@ -778,9 +778,9 @@ def clearance(
             f"what shrinking by {float(tolerance / 2)!r} makes of the bodies, which may be thinner"
         )
     report.partly = True
-    overlap = "are nearer than the gap" if keep else "overlap"
+    overlap = "are nearer than the gap" if min_gap else "overlap"
     report.unchecked.append(f"whether the bodies {overlap} where they are")
-    come_near = "come as near as the gap" if keep else "meet"
+    come_near = "come as near as the gap" if min_gap else "meet"
     report.unchecked.append(
         "that nothing stops the moving body before" if stop else f"that no two facets {come_near}"
     )
@@ -1022,11 +1022,11 @@ def box_gap(p: Bounds, q: Bounds) -> Fraction:
     return sum((max(c - b, a - d, Fraction()) ** 2 for a, b, c, d in sides), Fraction())
 
 
-def box_entry(p: Bounds, q: Bounds, d: Vector, keep: Fraction) -> Fraction | None:
+def box_entry(p: Bounds, q: Bounds, d: Vector, min_gap: Fraction) -> Fraction | None:
     """Returns the first translation, from 0 on, at which a box grown by a gap meets another."""
     first, last = Fraction(), None
     for a, b, c, e, x in zip(*p, *q, d, strict=True):
-        near, far = c - b - keep, e - a + keep
+        near, far = c - b - min_gap, e - a + min_gap
         if x == 0:
             if near > 0 or far < 0:
                 return _NEVER
@@ -1109,8 +1109,8 @@ class Scene:
     def __init__(self, file: File, report: Report) -> None:
         self.moving, *self.obstacles = file.poses()
         choices = file.query
-        fields(choices, "start_overlap", "keep graze_tolerance tolerance")
-        self.keep = bounded(gap_to_keep(choices), MOST, "the gap to be kept")
+        fields(choices, "start_overlap", "min_gap graze_tolerance tolerance")
+        self.min_gap = bounded(gap_to_keep(choices), MOST, "the gap to be kept")
         self.graze = number(choices.get("graze_tolerance", 0.0))
         tolerance = choices.get("tolerance")
         if self.graze < 0 or (tolerance is not None and number(tolerance) < 0):
@@ -1268,7 +1268,7 @@ class Scene:
                 raise RefusedError(f"obstacle {stop} is not proven to stop the moving body")
             self.told(f"obstacle {stop} stops it by {float(upper)!r}", open_lines)
         for k, body in enumerate(self.obstacles):
-            bound = bounds[k][0] if k in bounds else box_entry(self.box, box(body), d, self.keep)
+            bound = bounds[k][0] if k in bounds else box_entry(self.box, box(body), d, self.min_gap)
             overlaps = k in bounds and bounds[k][1] == -math.inf
             if overlaps or not beyond(bound, lower) or (bound == 0 and k not in bounds):
                 raise RefusedError(f"obstacle {k} is not proven to stop nothing before")
@@ -1301,7 +1301,7 @@ class Scene:
         back, never = scaled(d, Fraction(-1)), (_NEVER, _NEVER)
         if kind == "blocked":
             proof = of["contact"]["certificate"]
-            contact(self.moving, body, d, proof, report, "along the direction", self.keep)
+            contact(self.moving, body, d, proof, report, "along the direction", self.min_gap)
             if number(of["distance"]) > max(number(proof["lower"]), Fraction()):
                 raise RefusedError("the distance is larger than what is proven")
             upper = None if proof["upper"] is None else number(proof["upper"])
@@ -1309,7 +1309,7 @@ class Scene:
         if kind == "overlapping":
             for end, way in ((of["first"], d), (of["last"], back)):
                 proof = end["certificate"]
-                contact(self.moving, body, way, proof, report, "of the overlap", self.keep)
+                contact(self.moving, body, way, proof, report, "of the overlap", self.min_gap)
                 if proof["upper"] is None or number(proof["upper"]) >= 0:
                     raise RefusedError("the bodies are not proven to overlap")
             return Fraction(), -math.inf
@@ -1317,10 +1317,10 @@ class Scene:
             raise NoProofError(f"unknown clearance {kind!r}")
         ((why, free),) = of.items()
         if why == "separated":
-            separation(self.moving, body, d, free["certificate"], report, self.keep)
+            separation(self.moving, body, d, free["certificate"], report, self.min_gap)
         elif why == "behind":
             proof = free["certificate"]
-            contact(self.moving, body, back, proof, report, "against the direction", self.keep)
+            contact(self.moving, body, back, proof, report, "against the direction", self.min_gap)
             if number(proof["lower"]) < -number(proof["rounding"]):
                 raise RefusedError("the bodies are not proven to meet behind only")
         elif why == "slides":
@@ -1331,9 +1331,9 @@ class Scene:
 
     def slides(self, body: Body, d: Vector, normal: Vector) -> None:
         """Checks that the shadows overlap by at most the graze tolerance, up to rounding."""
-        noise = _NOISE * (size(self.moving, body) + self.keep)
+        noise = _NOISE * (size(self.moving, body) + self.min_gap)
         most = max(self.graze, 8 * noise) + 3 * noise
-        if not are_shadows_apart(self.moving, body, d, normal, self.keep - most):
+        if not are_shadows_apart(self.moving, body, d, normal, self.min_gap - most):
             raise RefusedError("the shadows overlap by more than the graze tolerance")
 
 
@@ -1993,8 +1993,8 @@ class Spin:
 
         ``W = sign (alpha^2 n_across + 2 alpha k x dn)`` is affine in the time. ``E y`` across the
         axis is a combination of its values at both ends. The sum of the weights is at least 1, and
-        at most the inverse cosine of half the angle ``alpha``. The loose bound is the longer ``W``
-        times the largest distance of a point from the axis.
+        at most ``1 / cos(alpha / 2)``. The loose bound is the longer ``W`` times the largest
+        distance of a point from the axis.
         """
         a, b = ends
         alpha = self.rate * (b.time - a.time)
@@ -2062,12 +2062,12 @@ class Plane:
         """Returns a lower bound of the gap in multiples of the normal, a rounded unit vector."""
         return self.gap * (1 - _UNIT_VECTOR)
 
-    def is_left(self, along: Fraction, keep: Fraction) -> bool:
-        """Checks whether the remaining gap is at least the claimed gap plus ``keep``.
+    def is_left(self, along: Fraction, min_gap: Fraction) -> bool:
+        """Checks whether the remaining gap is at least the claimed gap plus ``min_gap``.
 
         With a tolerated depth the sum, and the remaining gap, may be negative.
         """
-        gap, square = self.gap + keep, dot(self.normal, self.normal)
+        gap, square = self.gap + min_gap, dot(self.normal, self.normal)
         if gap > 0:
             return above(along, gap * gap * square)
         return along >= 0 or along * along <= gap * gap * square
@@ -2082,7 +2082,7 @@ class Span:
     begin: Fraction
     end: Fraction
     #: The minimum gap; a negative value is a tolerated depth.
-    keep: Fraction
+    min_gap: Fraction
 
     def gap(self, n: Vector, time: Fraction) -> Fraction:
         """Returns a lower bound of ``min_Q n.q - max_P n.p``."""
@@ -2093,7 +2093,7 @@ class Span:
 
     def has(self, plane: Plane) -> bool:
         """Checks whether a plane leaves its claimed gap beyond the minimum gap."""
-        return plane.is_left(self.gap(plane.normal, plane.time), self.keep)
+        return plane.is_left(self.gap(plane.normal, plane.time), self.min_gap)
 
     def joins(self, a: Plane, b: Plane) -> bool:
         """Checks whether two planes prove all times between them.
@@ -2115,8 +2115,8 @@ class Span:
         dn = minus(b.normal, a.normal)
         drift = minus(self.fixed.way, self.moving.way)
         c = 2 * dot(dn, drift) * (b.time - a.time)
-        if self.keep < 0:
-            c -= 2 * self.keep * dot(dn, dn) * (1 + Fraction(1, 2**40))
+        if self.min_gap < 0:
+            c -= 2 * self.min_gap * dot(dn, dn) * (1 + Fraction(1, 2**40))
         return any(
             stays(
                 a.along,
@@ -2182,10 +2182,10 @@ class Span:
             def least(n: Vector) -> Fraction:
                 return self.gap(n, time) - off
 
-            is_deep(claim, corners, least, (off, self.rounded()), max(-self.keep, Fraction()))
-        elif kind == "near" and self.keep > 0:
+            is_deep(claim, corners, least, (off, self.rounded()), max(-self.min_gap, Fraction()))
+        elif kind == "near" and self.min_gap > 0:
             is_near(
-                claim, self.ends(near_claim(claim)["pairs"], time), (off, self.rounded()), self.keep
+                claim, self.ends(near_claim(claim)["pairs"], time), (off, self.rounded()), self.min_gap
             )
         else:
             raise RefusedError(f"{kind!r} does not prove that the bodies meet")
@@ -2268,21 +2268,21 @@ def is_near(
     claim: Any,
     ends: list[tuple[Vector, Vector]],
     off: tuple[Fraction, Fraction],
-    keep: Fraction,
+    min_gap: Fraction,
 ) -> None:
     """Checks that points of both bodies are within a gap; the distance holds up to rounding."""
     told = number(claim["distance"])
     if len(ends) != 4:
         raise NoProofError("the claim does not have four pairs")
-    if not 0 <= told <= keep:
-        raise RefusedError(f"{float(told)!r} is not as near as {float(keep)!r}")
-    if told == 0 and keep >= off[0] and encloses([minus(q, p) for p, q in ends]):
+    if not 0 <= told <= min_gap:
+        raise RefusedError(f"{float(told)!r} is not as near as {float(min_gap)!r}")
+    if told == 0 and min_gap >= off[0] and encloses([minus(q, p) for p, q in ends]):
         return
     p, q = (mean([end[k] for end in ends], claim["weights"]) for k in (0, 1))
     between = minus(q, p)
     square = dot(between, between)
-    if not above(keep - off[0], square):
-        raise RefusedError(f"the points are not as near as {float(keep)!r}")
+    if not above(min_gap - off[0], square):
+        raise RefusedError(f"the points are not as near as {float(min_gap)!r}")
     if not above(told + off[1], square):
         raise RefusedError(f"the points are not as near as {float(told)!r}")
 
@@ -2296,7 +2296,7 @@ def stays(a: Fraction, b: Fraction, c: Fraction) -> bool:
     return min(a, b) > 0 and (over < 0 or over * over < 4 * a * b)
 
 
-def spans(movers: list[Any], points: Sequence[list[Vector]], keep: Fraction) -> list[Span]:
+def spans(movers: list[Any], points: Sequence[list[Vector]], min_gap: Fraction) -> list[Span]:
     """Returns the periods in which both bodies spin evenly, in order."""
     sides = []
     for of, own in zip(movers, points, strict=True):
@@ -2309,7 +2309,7 @@ def spans(movers: list[Any], points: Sequence[list[Vector]], keep: Fraction) -> 
     found = []
     for begin, end in pairwise(borders):
         p, q = (max((s for s in side if s.since <= begin), key=lambda s: s.since) for side in sides)
-        found.append(Span(p, q, begin, end, keep))
+        found.append(Span(p, q, begin, end, min_gap))
     return found
 
 
@@ -2318,8 +2318,8 @@ def motion(file: File, movers: list[Any], asked: Any, proof: Any, report: Report
     shapes = [file.shapes[of["body"]] for of in movers]
     if any(facets for _, facets in shapes) or asked["tolerance"] is not None:
         raise NoProofError("this claim needs convex bodies without a tolerance")
-    keep = asked["keep"]
-    all_spans = spans(movers, [points for points, _ in shapes], keep)
+    min_gap = asked["min_gap"]
+    all_spans = spans(movers, [points for points, _ in shapes], min_gap)
     fields(proof, "spans meeting")
     claimed = listed(proof["spans"])
     if len(claimed) > len(all_spans):
@@ -2330,8 +2330,8 @@ def motion(file: File, movers: list[Any], asked: Any, proof: Any, report: Report
         if reached != span.begin or (read and read[0].time != span.begin):
             raise RefusedError("a span does not begin where the previous one ends")
         reached = chain(span, read)
-    meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
-    if keep < 0:
+    meet = "meet" if min_gap == 0 else f"are as near as {float(min_gap)!r}"
+    if min_gap < 0:
         meet = f"overlap by more than {float(-keep)!r}"
     if any(claimed):
         told = "throughout the motion" if reached == 1 else f"up to the time {float(reached)!r}"
@@ -2523,13 +2523,13 @@ class Cover:
         n = self.normal(letter, nodes, span, (a, b))
         if not any(n):
             return False
-        kept = span.keep * root_above(dot(n, n))
+        kept = span.min_gap * root_above(dot(n, n))
         ends = [Plane(time, n, span.gap(n, time) - kept, False) for time in (a, b)]
         if min(end.gap for end in ends) > 0 and span.joins(ends[0], ends[1]):
             return True
         # Try a normal that both bodies carry along.
         n = self.normal(letter, nodes, span, (a, a))
-        gap = span.gap(n, a) - span.keep * root_above(dot(n, n))
+        gap = span.gap(n, a) - span.min_gap * root_above(dot(n, n))
         return gap > span.carried(Plane(a, n, gap, False), b)
 
     def normal(
@@ -2603,22 +2603,22 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
     size = max(abs(x) for v in (*f, *g) for x in v) + spins[0].reach + spins[1].reach
     off = size * _SURE
     kind, claim = one_of(meeting["met"], "crossing", "near", "inside", "contained")
-    if kind == "crossing" and span.keep == 0:
+    if kind == "crossing" and span.min_gap == 0:
         fields(claim, "moving edge")
         own, other = (f, g) if truth(claim["moving"]) else (g, f)
         k = whole(claim["edge"], 3)
         if not pierces(own[k], own[(k + 1) % 3], (other[0], other[1], other[2]), off):
             raise RefusedError("the edge does not pass through the facet")
-    elif kind == "near" and span.keep > 0:
+    elif kind == "near" and span.min_gap > 0:
         fields(claim, "weights")
         p, q = (
             mean(side, weights)
             for side, weights in zip((f, g), listed(claim["weights"], 2), strict=True)
         )
         between = minus(q, p)
-        if not above(span.keep - 4 * off, dot(between, between)):
-            raise RefusedError(f"the points are not as near as {float(span.keep)!r}")
-    elif kind == "inside" and span.keep == 0:
+        if not above(span.min_gap - 4 * off, dot(between, between)):
+            raise RefusedError(f"the points are not as near as {float(span.min_gap)!r}")
+    elif kind == "inside" and span.min_gap == 0:
         at = bounded_vector(fields(claim, "point")["point"], "the point")
         if not (parts[0].closed and parts[1].closed):
             raise RefusedError("open surfaces have no interior")
@@ -2629,7 +2629,7 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
             raise RefusedError("the point is not inside the moving solid")
         if not is_around(parts[1].closed, at, Fraction()):
             raise RefusedError("the point is not inside the fixed solid")
-    elif kind == "contained" and span.keep == 0:
+    elif kind == "contained" and span.min_gap == 0:
         fields(claim, "moving weights")
         which = 1 if truth(claim["moving"]) else 0
         closed = parts[which].closed
@@ -2748,11 +2748,11 @@ def solid_motion(file: File, movers: list[Any], asked: Any, claim: Any, report: 
     )
     parts = (p, q)
     check_tolerance(asked["tolerance"], number(proof["tolerance"]), parts)
-    keep = asked["keep"]
-    if keep < 0:
+    min_gap = asked["min_gap"]
+    if min_gap < 0:
         raise NoProofError("the minimum gap is negative")
-    all_spans = spans(movers, [[_ZERO], [_ZERO]], keep)
-    meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
+    all_spans = spans(movers, [[_ZERO], [_ZERO]], min_gap)
+    meet = "meet" if min_gap == 0 else f"are as near as {float(min_gap)!r}"
     moved = float(max(side.moved for side in parts))
     of = f"the facets, moved by at most {moved:.3g}," if moved else "the facets"
     claimed = listed(proof["spans"])
@@ -2820,19 +2820,19 @@ def motions(file: File, claims: Any, report: Report) -> None:
     """Checks the first contact among several pairs of bodies, convex or solid."""
     placed, asked = listed(file.placement), []
     for of in listed(file.query):
-        fields(of, "keep", "tolerance")
-        keep = bounded(number(of["keep"]), MOST, "the gap to be kept")
-        asked.append({"keep": keep, "tolerance": of.get("tolerance")})
+        fields(of, "min_gap", "tolerance")
+        min_gap = bounded(number(of["min_gap"]), MOST, "the gap to be kept")
+        asked.append({"min_gap": min_gap, "tolerance": of.get("tolerance")})
     pairs = list(zip(placed, asked, listed(claims), strict=True))
     if not pairs:
         raise NoProofError("there is no pair of bodies")
-    least = min(of["keep"] for of in asked)
+    least = min(of["min_gap"] for of in asked)
     for number_, (movers, of, claim) in enumerate(pairs):
         for mover in listed(movers, 2):
             file.number(fields(mover, "body motion")["body"])
         kind, proof = one_of(claim, "convex", "solids")
         # Solids that are apart by a larger gap are also apart by the smallest one.
-        if kind == "convex" and of["keep"] != least:
+        if kind == "convex" and of["min_gap"] != least:
             raise NoProofError("convex pairs have different minimum gaps")
         found = Report()
         if kind == "convex":
@@ -3128,7 +3128,7 @@ class Couple:
 
     moving: Carried
     fixed: Carried
-    keep: Fraction
+    min_gap: Fraction
     own: Sequence[Vector]
     other: Sequence[Vector]
     #: Upper bound of the distance of the input of both bodies beyond their vertices.
@@ -3150,15 +3150,16 @@ class Couple:
 
     def has(self, plane: Plane, row: int) -> bool:
         unit(plane.normal)
-        return plane.gap > 0 and plane.is_left(self.gap(plane.normal, row, plane.time), self.keep)
+        return plane.gap > 0 and plane.is_left(self.gap(plane.normal, row, plane.time), self.min_gap)
 
     def joins(self, row: int, a: Plane, b: Plane) -> bool:
         """Checks whether two planes of a row prove everything between them.
 
-        Along ``n(x)`` the height of a point has the second derivative ``h^2 n . p'' + 2 h dn .
-        p'``. The derivative of this is at most ``h^3`` times the third derivative of ``n . p``,
-        plus ``3 h^2 |dn| |p''|``. Therefore it never exceeds the mean of its values at both ends
-        plus half of that bound.
+        Let ``n(x)`` be the normal between both planes, ``x`` from 0 to 1. Along it the height of a
+        point has the second derivative ``h^2 n . p'' + 2 h dn . p'``. The derivative of this
+        second derivative is at most ``h^3`` times the third derivative of ``n . p``, plus
+        ``3 h^2 |dn| |p''|``. Therefore the second derivative never exceeds the mean of its values
+        at both ends plus half of that bound.
         """
         h = b.time - a.time
         if h == 0:
@@ -3214,7 +3215,7 @@ class Walk:
 
     moving: Carried
     fixed: Carried
-    keep: Fraction
+    min_gap: Fraction
     pieces: tuple[Pieces, Pieces]
     #: Upper bound of the distance of the input of both bodies beyond their vertices.
     left_out: Fraction
@@ -3223,7 +3224,7 @@ class Walk:
 
     def of(self, numbers: tuple[int, int]) -> Couple:
         own, other = (side.points[k] for side, k in zip(self.pieces, numbers, strict=True))
-        return Couple(self.moving, self.fixed, self.keep, own, other, self.left_out)
+        return Couple(self.moving, self.fixed, self.min_gap, own, other, self.left_out)
 
     def cover(
         self,
@@ -3374,7 +3375,7 @@ def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
 def is_in_both(walk: Walk, point: Vector, row: int, share: Fraction) -> None:
     """Checks that a point in the second body's frame is inside both solids at a place."""
     own, other = walk.pieces
-    if walk.keep or not (own.closed and other.closed):
+    if walk.min_gap or not (own.closed and other.closed):
         raise RefusedError(
             "a point proves nothing for open surfaces, convex bodies, or a minimum gap"
         )
@@ -3389,13 +3390,13 @@ def is_in_both(walk: Walk, point: Vector, row: int, share: Fraction) -> None:
 def do_meet(couple: Couple, met: Any, row: int, share: Fraction) -> None:
     """Checks that two convex pieces overlap at a place, or are within the minimum gap."""
     kind, claim = one_of(met, "deep", "near")
-    keep, off = couple.keep, (couple.off(), couple.rounded())
+    min_gap, off = couple.min_gap, (couple.off(), couple.rounded())
     if kind == "deep":
         pairs = deep_claim(claim)["enclosure"]["pairs"]
         corners = [minus(q, p) for p, q in couple.ends(pairs, row, share)]
         is_deep(claim, corners, lambda n: couple.gap(n, row, share), off, Fraction())
-    elif kind == "near" and keep > 0:
-        is_near(claim, couple.ends(near_claim(claim)["pairs"], row, share), off, keep)
+    elif kind == "near" and min_gap > 0:
+        is_near(claim, couple.ends(near_claim(claim)["pairs"], row, share), off, min_gap)
     else:
         raise RefusedError(f"{kind!r} does not prove that the bodies meet")
 
@@ -3503,7 +3504,7 @@ class Robot:
             reach *= 1 + 1e-9
         return reach
 
-    def walk(self, pair: tuple[int, int], keep: Fraction) -> Walk:
+    def walk(self, pair: tuple[int, int], min_gap: Fraction) -> Walk:
         """Returns two bodies relative to the last frame that carries both."""
         (way_p, p), (way_q, q) = (self.bodies[k] for k in pair)
         while way_p and way_q and way_p[0] == way_q[0]:
@@ -3514,7 +3515,7 @@ class Robot:
         )
         pieces = self.pieces[pair[0]], self.pieces[pair[1]]
         left_out = sum((self.left_out_of[k] for k in pair), Fraction())
-        return Walk(own, other, keep, pieces, left_out, len(self.rows) - 1)
+        return Walk(own, other, min_gap, pieces, left_out, len(self.rows) - 1)
 
     def time(self, row: int, share: Fraction) -> Fraction:
         times = self.times
@@ -3537,8 +3538,8 @@ class Robot:
 
 def path(file: File, statement: Any, report: Report) -> None:
     """Checks the first contact among pairs of bodies on chains of joints."""
-    fields(file.query, "path", "keep")
-    keep = bounded(gap_to_keep(file.query), MOST, "the gap to be kept")
+    fields(file.query, "path", "min_gap")
+    min_gap = bounded(gap_to_keep(file.query), MOST, "the gap to be kept")
     fields(statement, "pairs lower upper parts proof")
     proof, robot = fields(statement["proof"], "covers meeting"), Robot.read(file, statement)
     covers, pairs, last = listed(proof["covers"]), robot.pairs, len(robot.rows) - 1
@@ -3548,7 +3549,7 @@ def path(file: File, statement: Any, report: Report) -> None:
         raise RefusedError("the number of covers differs from the number of pairs")
     begin, reached, open_, begins = (0, Fraction()), (last, Fraction()), 0, True
     for pair, cover in zip(pairs, covers, strict=True):
-        walk, steps = robot.walk(pair, keep), fields(cover, "steps")["steps"]
+        walk, steps = robot.walk(pair, min_gap), fields(cover, "steps")["steps"]
         up_to = walk.cover(steps, (0, 0), begin, reached)
         if has_planes(steps):
             if walk.pieces[0].is_open or walk.pieces[1].is_open:
@@ -3558,7 +3559,7 @@ def path(file: File, statement: Any, report: Report) -> None:
         else:
             begins = False
         reached = min(reached, up_to)
-    meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
+    meet = "meet" if min_gap == 0 else f"are as near as {float(min_gap)!r}"
     lower, meeting = number(statement["lower"]), proof["meeting"]
     if lower > robot.time(*reached):
         raise RefusedError(f"the path up to {float(lower)!r} is not proven")
@@ -3584,7 +3585,7 @@ def path(file: File, statement: Any, report: Report) -> None:
     place = place_of(meeting["place"], last)
     if place < reached or (upper is not None and robot.time(*place) > upper):
         raise RefusedError(f"the place at which two bodies {meet} is before the proven part ends")
-    found, how = robot.walk(pairs[which], keep), meeting["how"]
+    found, how = robot.walk(pairs[which], min_gap), meeting["how"]
     if how == "inside":
         if place != begin or not (found.is_nested() or found.is_nested(everywhere=True)):
             raise RefusedError("neither body is inside the other at the start of the path")
@@ -3692,12 +3693,12 @@ def _no_number(text: str) -> Any:
 
 def gap_to_keep(of: Any) -> Fraction:
     """Returns the minimum gap of a query; 0 if there is none."""
-    keep = number(of.get("keep", 0.0))
-    if not 0 <= keep <= _RANGE[1]:
+    min_gap = number(of.get("min_gap", 0.0))
+    if not 0 <= min_gap <= _RANGE[1]:
         raise NoProofError(
-            f"a minimum gap of {float(keep)!r} is out of range; accepted: 0 to 2^200"
+            f"a minimum gap of {float(min_gap)!r} is out of range; accepted: 0 to 2^200"
         )
-    return keep
+    return min_gap
 
 
 def pair(file: File, kind: str, claim: Any, report: Report) -> None:
@@ -3713,20 +3714,20 @@ def pair(file: File, kind: str, claim: Any, report: Report) -> None:
 def along(file: File, kind: str, claim: Any, report: Report) -> None:
     """Checks a claim about two bodies along a direction."""
     moving, fixed = file.two(solids=kind == "clearance")
-    fields(file.query, "direction", "keep")
-    d, keep = place(file.query["direction"]), gap_to_keep(file.query)
+    fields(file.query, "direction", "min_gap")
+    d, min_gap = place(file.query["direction"]), gap_to_keep(file.query)
     if not any(d):
         raise NoProofError("the direction is zero")
     if kind == "separation":
-        separation(moving, fixed, d, claim, report, keep)
+        separation(moving, fixed, d, claim, report, min_gap)
     elif kind == "clearance":
-        clearance(moving, fixed, d, claim, report, keep)
+        clearance(moving, fixed, d, claim, report, min_gap)
     else:
-        contacts(moving, fixed, d, claim, report, keep)
+        contacts(moving, fixed, d, claim, report, min_gap)
 
 
 def contacts(
-    moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction
+    moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, min_gap: Fraction
 ) -> None:
     """Checks both ends of the range of translations at which two convex bodies meet."""
     claim = fields(claim, "", "slide first last")
@@ -3734,12 +3735,12 @@ def contacts(
     if not {"first", "last"} & set(claim):
         raise NoProofError("no contact is claimed")
     if "slide" in claim:
-        slide(moving, fixed, d, claim["slide"], report, keep)
+        slide(moving, fixed, d, claim["slide"], report, min_gap)
     if "first" in claim:
-        contact(moving, fixed, d, claim["first"], report, "along the direction", keep)
+        contact(moving, fixed, d, claim["first"], report, "along the direction", min_gap)
     if "last" in claim:
         back = scaled(d, Fraction(-1))
-        contact(moving, fixed, back, claim["last"], report, "against the direction", keep)
+        contact(moving, fixed, back, claim["last"], report, "against the direction", min_gap)
     report.unchecked.append("the stated rounding, which proves nothing")
 
 

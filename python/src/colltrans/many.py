@@ -41,7 +41,7 @@ def cast_many(
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
     graze_tolerance: ArrayLike = 0.0,
-    keep: ArrayLike = 0.0,
+    min_gap: ArrayLike = 0.0,
     solver: Solver = "auto",
     features: bool = False,
     threads: int | None = None,
@@ -64,7 +64,7 @@ def cast_many(
     graze_tolerance : float or array_like of shape (N,)
         Lateral overlaps up to this length count as grazing. With 0 the limit follows from rounding
         errors.
-    keep : float or array_like of shape (N,)
+    min_gap : float or array_like of shape (N,)
         A minimum gap, a length. The result is then the translation at which the distance of the
         bodies first falls to it.
     solver : {"auto", "cta", "portal"} or Cta
@@ -100,7 +100,7 @@ def cast_many(
     order or on ``threads``.
 
     Rows of flat bodies, of bodies with more than 16,384 pairs of vertices, with ``solver="cta"`` or
-    with a gap ``keep`` always have the bits of :func:`cast`. ``columns[i]`` has them too, because
+    with a gap ``min_gap`` always have the bits of :func:`cast`. ``columns[i]`` has them too, because
     it answers row ``i`` again by itself. Its margin, bounds and point may differ from those of the
     columns.
 
@@ -120,7 +120,7 @@ def cast_many(
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
     refuse_solids(moving, fixed)
-    queries = _casts((moving, fixed), direction, poses, indices, graze_tolerance, keep, solver)
+    queries = _casts((moving, fixed), direction, poses, indices, graze_tolerance, min_gap, solver)
     return ContactColumns._ask(queries, features, threads)
 
 
@@ -134,7 +134,7 @@ def contact_range_many(
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
     graze_tolerance: ArrayLike = 0.0,
-    keep: ArrayLike = 0.0,
+    min_gap: ArrayLike = 0.0,
     solver: Solver = "auto",
     features: bool = False,
     threads: int | None = None,
@@ -145,7 +145,7 @@ def contact_range_many(
     ----------
     moving, fixed, direction, moving_pose, fixed_pose, moving_index, fixed_index
         See :func:`cast_many`.
-    graze_tolerance, keep, solver, features, threads
+    graze_tolerance, min_gap, solver, features, threads
         See :func:`cast_many`.
 
     Returns
@@ -162,7 +162,7 @@ def contact_range_many(
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
     refuse_solids(moving, fixed)
-    queries = _casts((moving, fixed), direction, poses, indices, graze_tolerance, keep, solver)
+    queries = _casts((moving, fixed), direction, poses, indices, graze_tolerance, min_gap, solver)
     return RangeColumns._ask(queries, features, threads)
 
 
@@ -177,7 +177,7 @@ def clearance_many(
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
     graze_tolerance: ArrayLike = 0.0,
-    keep: ArrayLike = 0.0,
+    min_gap: ArrayLike = 0.0,
     solver: Solver = "auto",
     features: bool = False,
     threads: int | None = None,
@@ -192,7 +192,7 @@ def clearance_many(
     fixed_pose: Poses = None,
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
-    keep: ArrayLike = 0.0,
+    min_gap: ArrayLike = 0.0,
     solver: Solver = "auto",
     features: bool = False,
     threads: int | None = None,
@@ -209,7 +209,7 @@ def clearance_many(
     fixed_pose: Poses = None,
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
-    keep: ArrayLike = 0.0,
+    min_gap: ArrayLike = 0.0,
     solver: Solver = "auto",
     features: bool = False,
     threads: int | None = None,
@@ -226,7 +226,7 @@ def clearance_many(
     fixed_pose: Poses = None,
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
-    keep: ArrayLike = 0.0,
+    min_gap: ArrayLike = 0.0,
     solver: Solver = "auto",
     features: bool = False,
     threads: int | None = None,
@@ -243,7 +243,7 @@ def clearance_many(
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
     graze_tolerance: ArrayLike = 0.0,
-    keep: ArrayLike = 0.0,
+    min_gap: ArrayLike = 0.0,
     solver: Solver = "auto",
     features: bool = False,
     threads: int | None = None,
@@ -258,7 +258,7 @@ def clearance_many(
         See :func:`cast_many`. If one of them is a solid, all bodies are treated as solids.
     direction, moving_pose, fixed_pose, moving_index, fixed_index
         See :func:`cast_many`.
-    graze_tolerance, keep, solver, features, threads
+    graze_tolerance, min_gap, solver, features, threads
         See :func:`cast_many`.
     tolerance : float or array_like of shape (N,), optional
         For solids, see :class:`SolidCast`.
@@ -275,7 +275,7 @@ def clearance_many(
     >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     >>> clearance_many(cube, cube, [[0, 0, -1], [1, 0, 0]], moving_pose=[0, 0, 1]).distance
     array([ 0., inf])
-    >>> clearance_many(cube, cube, [0, 0, -1], moving_pose=[0, 0, 4], keep=[0, 0.25]).distance
+    >>> clearance_many(cube, cube, [0, 0, -1], moving_pose=[0, 0, 4], min_gap=[0, 0.25]).distance
     array([3.  , 2.75])
     """
     bodies, indices = (moving, fixed), (moving_index, fixed_index)
@@ -285,12 +285,12 @@ def clearance_many(
             told = "graze_tolerance, solver: are for convex bodies; solids have tolerance"
             raise InputError(told)
         solids = solid_casts(
-            bodies, direction, poses, indices, keep, tolerance, ignore_start_overlaps
+            bodies, direction, poses, indices, min_gap, tolerance, ignore_start_overlaps
         )
         return SolidColumns._ask(solids, features, threads)
     if tolerance is not None or ignore_start_overlaps:
         raise InputError("tolerance, ignore_start_overlaps: are for solids")
-    queries = _casts(bodies, direction, poses, indices, graze_tolerance, keep, solver)
+    queries = _casts(bodies, direction, poses, indices, graze_tolerance, min_gap, solver)
     return ClearanceColumns._ask(queries, features, threads)
 
 
@@ -300,12 +300,12 @@ def _casts(
     poses: tuple[Poses, Poses],
     indices: tuple[ArrayLike | None, ArrayLike | None],
     graze_tolerance: ArrayLike,
-    keep: ArrayLike,
+    min_gap: ArrayLike,
     solver: Solver,
 ) -> Queries:
     tables = {
         "direction": table(direction, "direction", 3),
         "graze_tolerance": column(graze_tolerance, "graze_tolerance"),
-        "keep": column(keep, "keep"),
+        "min_gap": column(min_gap, "min_gap"),
     }
     return queries_of(bodies, poses, indices, tables, solver=solver)

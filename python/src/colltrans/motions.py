@@ -90,7 +90,7 @@ def motion_many(
     fixed_pose: Poses = None,
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
-    keep: ArrayLike = 0.0,
+    min_gap: ArrayLike = 0.0,
     tolerance: ArrayLike | None = None,
     features: bool = False,
     threads: int | None = None,
@@ -110,7 +110,7 @@ def motion_many(
     moving_pose, fixed_pose : array_like, Pose or object with ``as_matrix()``, optional
         The start of motions that are given as arrays, or the pose of a body at rest; see
         :func:`cast_many`. Motion objects have their own pose.
-    keep : float or array_like of shape (N,)
+    min_gap : float or array_like of shape (N,)
         A minimum gap, a length.
     tolerance : float or array_like of shape (N,), optional
         See :class:`MotionCast`.
@@ -141,7 +141,7 @@ def motion_many(
         (moving, moving_index, moving_motion, moving_pose),
         (fixed, fixed_index, fixed_motion, fixed_pose),
     )
-    return MotionColumns._ask(_motions(sides, keep, tolerance), features, threads)
+    return MotionColumns._ask(_motions(sides, min_gap, tolerance), features, threads)
 
 
 def motion_clearance_many(
@@ -154,7 +154,7 @@ def motion_clearance_many(
     fixed_pose: Poses = None,
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
-    keep: ArrayLike = 0.0,
+    min_gap: ArrayLike = 0.0,
     tolerance: ArrayLike | None = None,
     features: bool = False,
     threads: int | None = None,
@@ -183,19 +183,19 @@ def motion_clearance_many(
         (moving, moving_index, moving_motion, moving_pose),
         (fixed, fixed_index, fixed_motion, fixed_pose),
     )
-    return MotionClearanceColumns._ask(_motions(sides, keep, tolerance), features, threads)
+    return MotionClearanceColumns._ask(_motions(sides, min_gap, tolerance), features, threads)
 
 
 #: The bodies of a side, the body index of each row, the motions and the poses.
 Side: TypeAlias = tuple[AnyBodies, ArrayLike | None, Motions, Poses]
 
 
-def _motions(sides: tuple[Side, Side], keep: ArrayLike, tolerance: ArrayLike | None) -> Queries:
+def _motions(sides: tuple[Side, Side], min_gap: ArrayLike, tolerance: ArrayLike | None) -> Queries:
     moving, fixed = sides
     tables = {
         "moving_motion": motion_table(moving[2], moving[3], "moving_motion"),
         "fixed_motion": motion_table(fixed[2], fixed[3], "fixed_motion"),
-        "keep": column(keep, "keep"),
+        "min_gap": column(min_gap, "min_gap"),
         "tolerance": column(tolerance, "tolerance"),
     }
     bodies, indices, poses = (moving[0], fixed[0]), (moving[1], fixed[1]), (moving[3], fixed[3])

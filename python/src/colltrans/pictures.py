@@ -174,7 +174,7 @@ def _asked(go: Any, answer: Any) -> Iterator[Any]:
 def _cleared(answer: MotionClearance) -> MotionCast:
     """Returns the query whose first contact is drawn, with the tolerance that was used."""
     query = answer.query
-    if query.keep > 0 or answer.tolerance is None:
+    if query.min_gap > 0 or answer.tolerance is None:
         return query
     return MotionCast(
         query.moving,

@@ -29,7 +29,7 @@ class PathQueries:
     paths: list[Any]
     scene: Mapping[str, ConvexPolyhedron | Solid] | None
     ignore: list[tuple[str, str]]
-    keep: float
+    min_gap: float
     joints: dict[str, float]
     columns: list[str] | None
     times: list[Any] | None
@@ -44,7 +44,7 @@ class PathQueries:
             self.paths,
             self.scene,
             self.ignore,
-            self.keep,
+            self.min_gap,
             self.joints,
             self.columns,
             self.times,
@@ -62,7 +62,7 @@ class PathQueries:
             self.paths[i],
             self.scene,
             ignore=self.ignore,
-            keep=self.keep,
+            min_gap=self.min_gap,
             joints=self.joints,
             columns=self.columns,
             times=None if self.times is None else self.times[i],
@@ -109,7 +109,7 @@ def path_many(
     scene: Mapping[str, ConvexPolyhedron | Solid] | None = None,
     *,
     ignore: Sequence[tuple[str, str]] = (),
-    keep: float = 0.0,
+    min_gap: float = 0.0,
     joints: Mapping[str, float] | None = None,
     columns: Sequence[str] | None = None,
     times: Sequence[ArrayLike] | None = None,
@@ -122,7 +122,7 @@ def path_many(
     robot : Robot
     paths : array_like of shape (N, K, J), or sequence of paths
         See :meth:`Robot.first_contact`. Paths may have different numbers of rows.
-    scene, ignore, keep, joints, columns
+    scene, ignore, min_gap, joints, columns
         See :meth:`Robot.first_contact`; one value for all paths.
     times : sequence of array_like, optional
         The times of the rows of each path.
@@ -158,7 +158,7 @@ def path_many(
         paths=paths,
         scene=scene,
         ignore=[(a, b) for a, b in ignore],
-        keep=float(keep),
+        min_gap=float(min_gap),
         joints=dict(joints or {}),
         columns=None if columns is None else list(columns),
         times=None if times is None else list(times),

@@ -84,14 +84,14 @@ def solid_casts(
     direction: ArrayLike,
     poses: tuple[Poses, Poses],
     indices: tuple[ArrayLike | None, ArrayLike | None],
-    keep: ArrayLike,
+    min_gap: ArrayLike,
     tolerance: ArrayLike | None,
     ignore_start_overlaps: bool,
 ) -> Queries:
     """Returns the arguments of :class:`SolidCast` for all rows."""
     tables = {
         "direction": table(direction, "direction", 3),
-        "keep": column(keep, "keep"),
+        "min_gap": column(min_gap, "min_gap"),
         "tolerance": column(tolerance, "tolerance"),
     }
     ignored = {"ignore_start_overlaps": ignore_start_overlaps}

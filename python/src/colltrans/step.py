@@ -531,7 +531,7 @@ def _name(label: Any) -> str:
 
 
 def _encoding(data: bytes) -> str:
-    """Returns OpenCASCADE's name of the encoding of a text."""
+    """Returns OpenCASCADE's name of the encoding: UTF-8 if the text is valid, else CP1252."""
     try:
         data.decode()
     except UnicodeDecodeError:
@@ -674,7 +674,7 @@ class Writer:
         self.parts.append(told)
 
     def _mesh(self, node: Node) -> int | None:
-        """Writes the mesh of a leaf once for each colour; returns its index."""
+        """Returns the mesh index of a leaf, written once per colour; None if it has no face."""
         faces = self.shape_of(node)[0]
         key = _entry(node.label), node.colour
         if faces and key not in self.meshes:

@@ -119,7 +119,7 @@ impl<'a> Contest<'a> {
             };
             let way = apart.on_fixed - apart.on_moving;
             let offset = way * (1.0 - gap / apart.distance);
-            let moving = start.translated(offset).expect("a pose");
+            let moving = start.translated_by(offset).expect("a pose");
             let walked = vclip.distance(&moving, &fixed);
             let hierarchical = hwalk.distance(&moving, &fixed);
             let answers = [

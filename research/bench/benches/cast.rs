@@ -37,7 +37,9 @@ fn cast(criterion: &mut Criterion) {
                 });
             });
         }
-        if let (Some(moving), Some(fixed)) = (parry::body(moving), parry::body(fixed)) {
+        if let (Some(moving), Some(fixed)) =
+            (parry::convert_body(moving), parry::convert_body(fixed))
+        {
             let settings: Vec<_> = settings.iter().map(ParrySetting::new).collect();
             let mut cycle = settings.iter().cycle();
             group.bench_function("parry3d-f64", |bencher| {

@@ -64,7 +64,7 @@ pub fn run<A: Args>(
 }
 
 /// Returns a function that puts the name of the measurement before an error.
-pub fn naming<E: Display>(what: impl Display) -> impl FnOnce(E) -> Failure {
+pub fn with_name<E: Display>(what: impl Display) -> impl FnOnce(E) -> Failure {
     move |error| format!("{what}: {error}").into()
 }
 
@@ -138,7 +138,7 @@ impl Run {
         report["program"] = json!(self.program);
         report["seed"] = json!(self.arguments.seed);
         report["rows"] = json!(self.rows);
-        fs::write(path, format!("{report:#}\n")).map_err(naming(path.display()))
+        fs::write(path, format!("{report:#}\n")).map_err(with_name(path.display()))
     }
 }
 
@@ -146,7 +146,7 @@ impl Run {
 ///
 /// # Panics
 /// If one of them is not an object.
-pub fn merged(row: impl Serialize, more: Value) -> Value {
+pub fn merge_objects(row: impl Serialize, more: Value) -> Value {
     let mut row = serde_json::to_value(row).expect("a row of numbers and names");
     let Value::Object(more) = more else { panic!("an object") };
     row.as_object_mut().expect("an object").extend(more);
@@ -275,7 +275,7 @@ fn line(columns: &[Column], cell: impl Fn(&Column) -> String) -> String {
 ///
 /// # Panics
 /// If the columns are not declared in this form.
-pub fn markdown<'a>(table: &str, rows: impl IntoIterator<Item = &'a Value>) -> String {
+pub fn markdown_table<'a>(table: &str, rows: impl IntoIterator<Item = &'a Value>) -> String {
     let columns = parse_columns(table);
     let line = |cell: &dyn Fn(&Column) -> String| {
         format!("|{}\n", columns.iter().map(|column| cell(column) + "|").collect::<String>())
@@ -329,7 +329,7 @@ mod tests {
     #[test]
     fn markdown_tables_and_rounded_numbers_are_formatted() {
         let page = "| a | | c |\n|---|---|---:|\n| x | ? | - |\n";
-        assert_eq!(markdown("a:<; :<=b; c:~", [&json!({ "a": "x" })]), page);
+        assert_eq!(markdown_table("a:<; :<=b; c:~", [&json!({ "a": "x" })]), page);
         assert_eq!([1_234_567.0, 999.4].map(group_thousands), ["1,234,567", "999"]);
         assert_eq!([0.333, 12.34, 345.6].map(round_to_significant), ["0.33", "12.3", "346"]);
     }

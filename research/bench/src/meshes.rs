@@ -19,7 +19,7 @@ pub struct MeshArguments {
 
 impl MeshArguments {
     /// Whether a row with this name is selected.
-    pub fn wants(&self, name: &str) -> bool {
+    pub fn is_selected(&self, name: &str) -> bool {
         self.only.as_ref().is_none_or(|only| name.contains(only.as_str()))
     }
 
@@ -33,14 +33,14 @@ impl MeshArguments {
         let folder = self.data.join("trimesh");
         let read = |[a, b]: &[&str; 2]| {
             let name = [a, b].map(|file| file.rsplit('/').next().unwrap_or(file)).join(" x ");
-            self.wants(&name).then(|| {
+            self.is_selected(&name).then(|| {
                 Some((
                     name,
                     [read_mesh(&folder.join(a))?, read_mesh(&folder.join(b))?].map(center_on_box),
                 ))
             })?
         };
-        let made = made.into_iter().filter(|(name, _)| self.wants(name));
+        let made = made.into_iter().filter(|(name, _)| self.is_selected(name));
         let made = made.map(|(name, meshes)| (name.to_owned(), meshes.map(center_on_box)));
         made.chain(files.iter().filter_map(read)).collect()
     }
@@ -62,12 +62,12 @@ fn read_mesh(path: &Path) -> Option<Mesh> {
 
 /// Moves the centre of the mesh's box to the origin.
 fn center_on_box(mesh: Mesh) -> Mesh {
-    let middle = Aabb::of_points(mesh.vertices.iter().copied()).center();
+    let middle = Aabb::from_points(mesh.vertices.iter().copied()).center();
     mesh.translated(-middle)
 }
 
 /// Builds a closed solid, or an open surface if the mesh is not closed.
-pub fn solid(mesh: &Mesh) -> Option<Solid> {
+pub fn solid_from_mesh(mesh: &Mesh) -> Option<Solid> {
     Solid::from_mesh(&mesh.vertices, &mesh.faces)
         .or_else(|_| Solid::from_open_mesh(&mesh.vertices, &mesh.faces))
         .map_err(|error| eprintln!("{error}"))

@@ -14,8 +14,8 @@ use parry3d_f64::shape::{Compound, Shape, SharedShape, TriMesh};
 use crate::times::Times;
 
 /// Converts a body, with its faces cut into fans of triangles; `None` if parry rejects it.
-pub fn body(body: &ConvexPolyhedron) -> Option<ParryPolyhedron> {
-    let points = body.vertices().iter().map(|v| vector(*v)).collect();
+pub fn convert_body(body: &ConvexPolyhedron) -> Option<ParryPolyhedron> {
+    let points = body.vertices().iter().map(|v| convert_vector(*v)).collect();
     let mut triangles = Vec::new();
     for face in 0..body.face_count() as u32 {
         let mut corners = body.face_vertices(face);
@@ -38,12 +38,12 @@ pub struct ParrySetting {
 impl ParrySetting {
     /// Converts a setting.
     pub fn new(setting: &Setting) -> Self {
-        Self::placed([&setting.moving, &setting.fixed], setting.direction)
+        Self::from_poses([&setting.moving, &setting.fixed], setting.direction)
     }
 
     /// Converts the poses of the moving and of the fixed body, and a direction.
-    pub fn placed(poses: [&Pose; 2], direction: DVec3) -> Self {
-        Self { poses: poses.map(convert_pose), velocity: vector(direction) }
+    pub fn from_poses(poses: [&Pose; 2], direction: DVec3) -> Self {
+        Self { poses: poses.map(convert_pose), velocity: convert_vector(direction) }
     }
 
     /// Returns parry's distance; 0 if the bodies overlap.
@@ -74,12 +74,12 @@ impl ParrySetting {
 
 /// A reference measurement: parry's casts of two bodies with 8 vertices, measured along with every row. Changes
 /// of the machine's speed affect it like our queries.
-pub struct Scale {
+pub struct ReferenceCasts {
     bodies: [ParryPolyhedron; 2],
     settings: Vec<ParrySetting>,
 }
 
-impl Scale {
+impl ReferenceCasts {
     /// Draws `settings` settings in which the bodies collide.
     ///
     /// # Panics
@@ -87,7 +87,7 @@ impl Scale {
     pub fn new(small: &Bodies, settings: usize, random: &mut Random) -> Self {
         let mut draw = || ParrySetting::new(&Setting::draw(small, Meeting::Colliding, random));
         let settings = (0..settings).map(|_| draw()).collect();
-        let convert = |small| body(small).expect("a body that parry takes");
+        let convert = |small| convert_body(small).expect("a body that parry takes");
         Self { bodies: small.pair.each_ref().map(convert), settings }
     }
 
@@ -102,14 +102,14 @@ impl Scale {
 }
 
 /// Converts a vector.
-pub fn vector(v: DVec3) -> parry_math::Vector {
+pub fn convert_vector(v: DVec3) -> parry_math::Vector {
     parry_math::Vector::from_array(v.to_array())
 }
 
 /// Converts a pose.
 fn convert_pose(pose: &Pose) -> parry_math::Pose {
     let rotation = parry_math::Rotation::from_array(pose.rotation().to_array());
-    parry_math::Pose::from_parts(vector(pose.translation()), rotation)
+    parry_math::Pose::from_parts(convert_vector(pose.translation()), rotation)
 }
 
 /// Builds a triangle mesh with its tree.
@@ -117,7 +117,7 @@ fn convert_pose(pose: &Pose) -> parry_math::Pose {
 /// # Panics
 /// If there are no triangles.
 pub fn triangle_mesh(vertices: &[DVec3], triangles: &[[u32; 3]]) -> TriMesh {
-    let points = vertices.iter().map(|v| vector(*v)).collect();
+    let points = vertices.iter().map(|v| convert_vector(*v)).collect();
     TriMesh::new(points, triangles.to_vec()).expect("triangles")
 }
 
@@ -145,9 +145,9 @@ impl Spin {
         let own = start.matrix().transpose() * (center - start.translation());
         let moving = query::NonlinearRigidMotion::new(
             convert_pose(start),
-            vector(own),
-            vector(velocity),
-            vector(spin),
+            convert_vector(own),
+            convert_vector(velocity),
+            convert_vector(spin),
         );
         Self { moving, fixed: query::NonlinearRigidMotion::constant_position(convert_pose(there)) }
     }

@@ -82,7 +82,7 @@ impl Shape {
             scaled(shapes::revolved(rings, apexes, (n / rings.len()).max(3)), round)
         };
         let inner = 1.0 - CHAMFER;
-        body(&match self {
+        body_from_mesh(&match self {
             Self::Ellipsoid => scaled(shapes::ring_sphere(around, rings), semi_axes),
             Self::RandomHull => shapes::random_hull(n, random),
             // The length does not depend on the ratio. The rings run around the long axis or across the plate.
@@ -114,7 +114,7 @@ impl Shape {
 ///
 /// # Errors
 /// The errors of the constructors of [`ConvexPolyhedron`].
-pub fn body(mesh: &Mesh) -> Result<ConvexPolyhedron, BuildError> {
+pub fn body_from_mesh(mesh: &Mesh) -> Result<ConvexPolyhedron, BuildError> {
     if mesh.faces.is_empty() {
         ConvexPolyhedron::from_points(&mesh.vertices)
     } else {

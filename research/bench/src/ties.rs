@@ -12,7 +12,7 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes;
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::shapes::body;
+use crate::shapes::body_from_mesh;
 
 /// A kind of tie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,7 +89,7 @@ impl Tie {
                 [shapes::prism(25, 0.5), shapes::cuboid(DVec3::new(0.5, 4.0, 4.0))]
             }
         };
-        Bodies::new(pair.map(|mesh| body(&mesh).expect("a convex body")))
+        Bodies::new(pair.map(|mesh| body_from_mesh(&mesh).expect("a convex body")))
     }
 
     /// Draws the position of the moving body in the jig, before it moves along `-z`.

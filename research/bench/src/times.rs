@@ -9,8 +9,8 @@ use colltrans_testkit::timing::{Stopwatch, mean_and_deviation, quantile, without
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
-use crate::harness::merged;
-use crate::parry::Scale;
+use crate::harness::merge_objects;
+use crate::parry::ReferenceCasts;
 
 /// Times of single queries, in nanoseconds. As JSON: `median_ns`, `mean_ns`, `p90_ns` and `p99_ns`.
 #[derive(Debug, Clone, Default)]
@@ -80,7 +80,7 @@ impl Clock {
     }
 
     /// Returns the answers and times of two queries. Their order changes from turn to turn.
-    pub fn both<A, B>(
+    pub fn time_both<A, B>(
         self,
         turn: usize,
         us: impl FnMut() -> A,
@@ -98,7 +98,7 @@ impl Clock {
 
 /// Times of the same queries in this library and in another one.
 #[derive(Debug, Clone, Default)]
-pub struct Beside {
+pub struct Comparison {
     /// Times of this library.
     pub ours: Times,
     /// Times of the other library.
@@ -107,7 +107,7 @@ pub struct Beside {
     pub ratios: Times,
 }
 
-impl Beside {
+impl Comparison {
     /// Adds the times of a query.
     pub fn add(&mut self, ours: f64, theirs: f64) {
         self.ours.add(ours);
@@ -116,13 +116,13 @@ impl Beside {
     }
 
     /// Sends a query to both libraries and returns the answers. The order changes from query to query.
-    pub fn ask<A, B>(
+    pub fn compare_query<A, B>(
         &mut self,
         clock: Clock,
         us: impl FnMut() -> A,
         them: impl FnMut() -> B,
     ) -> (A, B) {
-        let ((mine, ours), (other, theirs)) = clock.both(self.ours.count(), us, them);
+        let ((mine, ours), (other, theirs)) = clock.time_both(self.ours.count(), us, them);
         self.add(ours, theirs);
         (mine, other)
     }
@@ -164,13 +164,13 @@ impl Beside {
             "ratio": theirs.mean() / ours.mean(),
             "ratio_of_medians": theirs.median() / ours.median(),
         });
-        merged(ours, more)
+        merge_objects(ours, more)
     }
 }
 
 /// Measurements of one solver in one row: times, work, failures.
 #[derive(Debug, Clone, Default)]
-pub struct Measured {
+pub struct SolverFigures {
     /// Times of its queries.
     pub times: Times,
     /// Work of all answered queries.
@@ -181,9 +181,9 @@ pub struct Measured {
     pub failures: u32,
 }
 
-impl Measured {
+impl SolverFigures {
     /// Adds the time and the outcome of a query.
-    pub fn note(&mut self, spent: f64, outcome: &Result<Outcome, QueryError>) {
+    pub fn add_outcome(&mut self, spent: f64, outcome: &Result<Outcome, QueryError>) {
         self.times.add(spent);
         self.count(outcome);
     }
@@ -206,7 +206,7 @@ impl Measured {
 
 /// As JSON: the figures of the times; the means of planar problems, supports, pivots, iterations and starts
 /// from features; the failures.
-impl Serialize for Measured {
+impl Serialize for SolverFigures {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let average = |count: u32| f64::from(count) / self.times.count().max(1) as f64;
         let more = json!({
@@ -217,7 +217,7 @@ impl Serialize for Measured {
             "by_features": average(self.by_features),
             "failures": self.failures,
         });
-        merged(&self.times, more).serialize(serializer)
+        merge_objects(&self.times, more).serialize(serializer)
     }
 }
 
@@ -237,13 +237,13 @@ pub fn blocks(
 ///
 /// The order changes from block to block. `answer` answers a block as one of the contestants. `compare` takes
 /// the answers of all contestants to a block.
-pub fn in_rotation<'a, R: Default, const N: usize>(
+pub fn measure_in_turns<'a, R: Default, const N: usize>(
     blocks: &[Block<'a>],
-    scale: &Scale,
-    mut answer: impl FnMut(usize, &Block<'a>, &mut Measured) -> R,
+    scale: &ReferenceCasts,
+    mut answer: impl FnMut(usize, &Block<'a>, &mut SolverFigures) -> R,
     mut compare: impl FnMut(&[R; N]),
-) -> ([Measured; N], Times) {
-    let mut measured = [(); N].map(|()| Measured::default());
+) -> ([SolverFigures; N], Times) {
+    let mut measured = [(); N].map(|()| SolverFigures::default());
     let mut parry = Times::default();
     for (turn, block) in blocks.iter().enumerate() {
         let mut answers = [(); N].map(|()| R::default());

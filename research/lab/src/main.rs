@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use clap::Parser;
 use colltrans_lab::plan::{Plan, Progress};
 use colltrans_lab::{Experiment, LabError, experiments};
-use colltrans_testkit::provenance::for_people;
+use colltrans_testkit::provenance::readable_duration;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use args::{Arguments, Command};
@@ -71,7 +71,7 @@ fn announce(chosen: &[Experiment], plan: &Plan, output: &Path) {
         "Measuring {} ({}), which takes about {}. Results go to {}.\n",
         names.join(", "),
         plan.scale.name(),
-        for_people(Duration::from_secs_f64(seconds)),
+        readable_duration(Duration::from_secs_f64(seconds)),
         output.display()
     );
     // Nobody may be listening.
@@ -113,7 +113,10 @@ impl Progress for Bar {
             String::new()
         } else {
             let left = spent.mul_f64((1.0 - share) / share);
-            format!("about {} left: ", for_people(Duration::from_secs(left.as_secs().max(1))))
+            format!(
+                "about {} left: ",
+                readable_duration(Duration::from_secs(left.as_secs().max(1)))
+            )
         };
         self.drawn.set_position((Self::FINENESS * share) as u64);
         self.drawn.set_message(format!("{left}{doing}"));

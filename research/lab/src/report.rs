@@ -9,7 +9,7 @@ use crate::claims::{Claim, PaperClaim, READINGS, Verdict, Why};
 use crate::draw::Picture;
 use crate::finding::{Figure, Finding, Table};
 use crate::plan::Plan;
-use colltrans_testkit::provenance::{Provenance, for_people};
+use colltrans_testkit::provenance::{Provenance, readable_duration};
 
 /// A finished experiment.
 #[derive(Debug, Clone)]
@@ -128,7 +128,7 @@ fn write_facts(page: &mut String, report: &Report) -> fmt::Result {
         ("Command", command),
         ("Scale", &scale),
         ("Seed", &seed),
-        ("Wall time", &for_people(report.wall)),
+        ("Wall time", &readable_duration(report.wall)),
     ];
     page.push_str("<dl class=\"facts\">\n");
     for (name, value) in facts {
@@ -208,7 +208,7 @@ fn claims_of(done: &[Done], verdict: Verdict) -> impl Iterator<Item = (&'static 
 fn write_experiment(page: &mut String, done: &Done) -> fmt::Result {
     let (id, name) = (done.experiment.id, done.experiment.name());
     let title = Escaped(done.experiment.title);
-    let wall = for_people(done.wall);
+    let wall = readable_duration(done.wall);
     write!(
         page,
         "<section id=\"{id}\">\n<h2>{name}: {title}</h2>\n<p class=\"faint\">Measured in {wall}.\

@@ -16,7 +16,7 @@ use crate::finding::Finding;
 use crate::plan::{Plan, Progress};
 use crate::report::{self, Done, Report};
 use crate::{Experiment, claims_json, csv, shapes};
-use colltrans_testkit::provenance::{Provenance, for_people};
+use colltrans_testkit::provenance::{Provenance, readable_duration};
 
 /// Results of a run; the [`Display`](fmt::Display) form is a text for people.
 #[derive(Debug, Clone)]
@@ -139,6 +139,11 @@ impl fmt::Display for Summary {
             writeln!(f, "{}", report::UNOPTIMISED)?;
         }
         let verdicts = report::verdict_counts(&self.done);
-        writeln!(f, "{verdicts}, {}. Report: {}", for_people(self.wall), self.report.display())
+        writeln!(
+            f,
+            "{verdicts}, {}. Report: {}",
+            readable_duration(self.wall),
+            self.report.display()
+        )
     }
 }

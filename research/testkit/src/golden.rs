@@ -33,7 +33,7 @@ impl Hash {
     }
 
     /// Returns the hash of everything added.
-    pub fn value(&self) -> u64 {
+    pub fn finish(&self) -> u64 {
         self.0
     }
 }

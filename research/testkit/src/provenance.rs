@@ -118,7 +118,7 @@ fn command_line(mut arguments: impl Iterator<Item = String>) -> String {
 }
 
 /// Formats a duration for readers: `0.4 s`, `12 s`, `3 min 20 s`, `1 h 2 min`.
-pub fn for_people(duration: Duration) -> String {
+pub fn readable_duration(duration: Duration) -> String {
     let seconds = duration.as_secs();
     match seconds {
         0..10 => format!("{:.1} s", duration.as_secs_f64()),
@@ -151,7 +151,7 @@ mod tests {
         for (seconds, expected) in
             [(0.44, "0.4 s"), (12.9, "12 s"), (200.0, "3 min 20 s"), (3725.0, "1 h 2 min")]
         {
-            assert_eq!(for_people(Duration::from_secs_f64(seconds)), expected);
+            assert_eq!(readable_duration(Duration::from_secs_f64(seconds)), expected);
         }
     }
 

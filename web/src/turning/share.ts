@@ -15,7 +15,7 @@ export function asCommand(state: State, { point, axis, angle, rise }: Screw): st
     if (state.parts[slot].take === "hull") words.push(`--hull-${slot}`);
   }
   if (Object.values(state.parts).some(({ take }) => take === "open")) words.push("--open");
-  if (state.motion.keep) words.push(`--keep=${state.motion.keep}`);
+  if (state.motion.minGap) words.push(`--min-gap=${state.motion.minGap}`);
   if (state.tolerance !== null) words.push(`--tolerance=${state.tolerance}`);
   return words.join(" ");
 }

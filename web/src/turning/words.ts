@@ -14,10 +14,10 @@ export function gone({ angle, rise }: Screw, time: number): string {
   return ways.filter(Boolean).join(", ");
 }
 
-export function say({ record }: PageMotion, screw: Screw, keep: number): Said {
+export function say({ record }: PageMotion, screw: Screw, minGap: number): Said {
   const { outcome, time, features, normal, point, looks = 0, planes, tolerance } = record;
   const rows: [string, string][] = [];
-  const near = keep ? `come as near as ${short(keep)}` : "meet";
+  const near = minGap ? `come as near as ${short(minGap)}` : "meet";
   if (time) {
     const { lower, upper } = time;
     rows.push(["time", `${short(lower, 12)} of the motion`], ["proven", upper === undefined ? `not before ${short(lower, 15)}` : `${short(lower, 15)} to ${short(upper, 15)}`]);
@@ -31,7 +31,7 @@ export function say({ record }: PageMotion, screw: Screw, keep: number): Said {
   rows.push(["looked at", `${looks} times${planes === undefined ? "" : `, ${planes} planes in the proof`}`]);
   switch (outcome) {
     case "contact": {
-      const what = features && !keep ? `then ${kind(features.moving)} of the moving body meets ${kind(features.fixed)} of the fixed one` : `then they ${near}`;
+      const what = features && !minGap ? `then ${kind(features.moving)} of the moving body meets ${kind(features.fixed)} of the fixed one` : `then they ${near}`;
       return { kind: "stop", headline: `Contact at ${gone(screw, time!.lower)}`, sentence: `Free for ${short(100 * time!.lower)} % of the motion; ${what}.`, rows };
     }
     case "grazing":
@@ -45,7 +45,7 @@ export function say({ record }: PageMotion, screw: Screw, keep: number): Said {
         sentence: `The search took its maximum number of steps. Proven: they do not ${near} before. Later contacts are open.`, rows,
       };
     case "overlapping":
-      return { kind: "care", headline: "They overlap at the start", sentence: keep ? "Or they are closer than the minimum gap." : "Later times are not examined.", rows };
+      return { kind: "care", headline: "They overlap at the start", sentence: minGap ? "Or they are closer than the minimum gap." : "Later times are not examined.", rows };
     default:
       return { kind: "free", headline: "The whole motion is free", sentence: `Proven: at no time of the motion do they ${near}.`, rows };
   }

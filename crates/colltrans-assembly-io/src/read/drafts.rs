@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use colltrans::solid::ShellKind;
 use colltrans_mesh::Mesh;
-use colltrans_mesh::body::{self, Apart};
+use colltrans_mesh::body::{self, SplitBodies};
 use colltrans_mesh::words::first_named;
 use glam::{DAffine3, DVec3};
 
 use super::files::Source;
-use super::{MOST_PLACED, Names, assembly_error, contents_error};
+use super::{MAX_PLACED, Names, assembly_error, contents_error};
 use crate::error::ReadError;
 use colltrans_assembly::AssemblyError;
 use colltrans_assembly::{Assembly, Part, Piece};
@@ -23,7 +23,7 @@ pub(super) const MOST_NAMED: usize = 4;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Split {
     /// Splits only a source with a single mesh: into the named objects of its file, or into its bodies if the
-    /// file names none. Other sources are read as with [`Never`](Self::Never), except that each 3MF object with
+    /// file names none. Other sources are read as with [`ForbiddenDirection`](Self::Never), except that each 3MF object with
     /// a mesh is a part.
     #[default]
     Auto,
@@ -139,9 +139,9 @@ pub(super) fn assemble(
     builder.names.reserve(drafts.iter().map(|draft| &draft.name));
     for draft in drafts {
         builder.add_draft(&source, &draft, alone)?;
-        if builder.parts.len() > MOST_PLACED {
+        if builder.parts.len() > MAX_PLACED {
             let reason = format!(
-                "more than {MOST_PLACED} bodies are placed; split the source into smaller ones"
+                "more than {MAX_PLACED} bodies are placed; split the source into smaller ones"
             );
             return Err(contents_error(path, "bodies", reason));
         }
@@ -157,7 +157,7 @@ fn apply_scales(source: &Source, mut drafts: Vec<Draft>) -> Result<Vec<Draft>, R
     for (name, &factor) in &source.options.scales {
         let refused = |error| assembly_error(source.path)(error);
         if !(factor.is_finite() && factor > 0.0) {
-            return Err(refused(AssemblyError::Length { what: "scale", value: factor }));
+            return Err(refused(AssemblyError::InvalidValue { what: "scale", value: factor }));
         }
         let is_meant = |draft: &Draft| match name.strip_suffix('*') {
             Some(prefix) => draft.name.starts_with(prefix),
@@ -242,9 +242,9 @@ impl PartBuilder {
         let mut apart = Vec::new();
         for (name, placed) in all {
             let refused = |source| AssemblyError::Part { part: name.clone(), source };
-            let found = body::bodies(&placed.mesh, &source.options.body_options())
+            let found = body::split_bodies(&placed.mesh, &source.options.body_options())
                 .map_err(|e| draft.located_error(source, refused(e)))?;
-            let Some(Apart { meshes, notes }) = found else {
+            let Some(SplitBodies { meshes, notes }) = found else {
                 apart.push((name, placed));
                 continue;
             };
@@ -278,7 +278,7 @@ fn named_objects(draft: &Draft) -> Vec<(String, Placed)> {
     let mut all = Vec::new();
     let mut several = false;
     for placed in &draft.pieces {
-        let named = placed.mesh.named();
+        let named = placed.mesh.named_parts();
         several |= !named.is_empty();
         if named.is_empty() {
             all.push((draft.name.clone(), placed.clone()));

@@ -1,9 +1,11 @@
 //! Opens the files that a source refers to, inside the permitted folders only.
 //!
-//! A source is untrusted. References are resolved inside its own folder and the folders that the caller
-//! permits. Symbolic links must not lead out of these folders. For example, `/etc/passwd`, devices and network
-//! addresses are rejected, unless the caller allows all files. Invariant: a file is opened only after its
-//! canonical path was found to be inside.
+//! A source is untrusted. References are resolved inside its own folder and the folders of packages. Symbolic
+//! links must not lead out of these folders. For example, `/etc/passwd` is rejected, unless the caller allows
+//! all files. Network addresses, devices and pipes are always rejected.
+//!
+//! Invariant of `Folders`, unless all files are allowed: a file is opened only after its canonical path was
+//! found to be inside. The source itself (`SourceAndFiles`) is read from any location.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -14,7 +16,7 @@ use crate::error::ReadError;
 
 /// The reason why a file was not read.
 #[derive(Debug)]
-pub enum FileFault {
+pub enum FileError {
     /// The file lies outside of the permitted folders.
     Outside,
     /// The file cannot be read.
@@ -26,13 +28,13 @@ pub trait Files {
     /// Returns the contents of a file; `None` if it does not exist.
     ///
     /// # Errors
-    /// [`FileFault`] if the file cannot be read or lies outside of the permitted folders.
-    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileFault>;
+    /// [`FileError`] if the file cannot be read or lies outside of the permitted folders.
+    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileError>;
 }
 
 /// Files in memory, by path.
 impl Files for BTreeMap<PathBuf, Vec<u8>> {
-    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileFault> {
+    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileError> {
         Ok(self.get(path).cloned())
     }
 }
@@ -41,7 +43,7 @@ impl Files for BTreeMap<PathBuf, Vec<u8>> {
 pub(super) struct NoFiles;
 
 impl Files for NoFiles {
-    fn bytes(&self, _: &Path) -> Result<Option<Vec<u8>>, FileFault> {
+    fn bytes(&self, _: &Path) -> Result<Option<Vec<u8>>, FileError> {
         Ok(None)
     }
 }
@@ -68,17 +70,17 @@ impl Folders {
 
 #[cfg(feature = "files")]
 impl Files for Folders {
-    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileFault> {
+    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileError> {
         use std::io::ErrorKind::{NotADirectory, NotFound};
         let real = match path.canonicalize() {
             Ok(real) => real,
             Err(e) if matches!(e.kind(), NotFound | NotADirectory) => return Ok(None),
-            Err(e) => return Err(FileFault::Io(e)),
+            Err(e) => return Err(FileError::Io(e)),
         };
         if self.inside.as_ref().is_some_and(|all| !all.iter().any(|root| real.starts_with(root))) {
-            return Err(FileFault::Outside);
+            return Err(FileError::Outside);
         }
-        colltrans_mesh::file::bytes(&real).map(Some).map_err(FileFault::Io)
+        colltrans_mesh::file::bytes(&real).map(Some).map_err(FileError::Io)
     }
 }
 
@@ -91,9 +93,9 @@ pub(super) struct SourceAndFiles<'a> {
 
 #[cfg(feature = "files")]
 impl Files for SourceAndFiles<'_> {
-    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileFault> {
+    fn bytes(&self, path: &Path) -> Result<Option<Vec<u8>>, FileError> {
         if path == self.path {
-            return colltrans_mesh::file::bytes(path).map(Some).map_err(FileFault::Io);
+            return colltrans_mesh::file::bytes(path).map(Some).map_err(FileError::Io);
         }
         self.files.bytes(path)
     }
@@ -133,7 +135,7 @@ impl<'a> Source<'a> {
     /// Returns the text of the source itself.
     #[cfg(feature = "files")]
     pub(super) fn text(&self) -> Result<String, ReadError> {
-        colltrans_mesh::file::decoded(self.own_bytes()?).map_err(super::io_error(self.path))
+        colltrans_mesh::file::decode_text(self.own_bytes()?).map_err(super::io_error(self.path))
     }
 
     /// Opens a file by a reference relative to the folder of the source. Returns its path and contents; `None`
@@ -157,7 +159,7 @@ impl<'a> Source<'a> {
                 format!("{name} is a network address ({scheme}); accepted: paths of files");
             return Err(super::contents_error(self.path, "file references", reason));
         }
-        let outside = || ReadError::Outside { path: self.path.into(), name: name.into() };
+        let outside = || ReadError::OutsideFolder { path: self.path.into(), name: name.into() };
         if Path::new(name).has_root() && !self.options.allow_outside {
             return Err(outside());
         }
@@ -172,10 +174,11 @@ impl<'a> Source<'a> {
     /// Returns the contents of a file and records its path; `None` if it does not exist.
     fn open_file(&self, path: &Path) -> Result<Option<Vec<u8>>, ReadError> {
         let refused = |fault| match fault {
-            FileFault::Outside => {
-                ReadError::Outside { path: self.path.into(), name: path.display().to_string() }
-            }
-            FileFault::Io(source) => ReadError::Io { path: path.into(), source },
+            FileError::Outside => ReadError::OutsideFolder {
+                path: self.path.into(),
+                name: path.display().to_string(),
+            },
+            FileError::Io(source) => ReadError::Io { path: path.into(), source },
         };
         let bytes = self.files.bytes(path).map_err(refused)?;
         if bytes.is_some() {

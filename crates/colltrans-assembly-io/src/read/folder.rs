@@ -19,7 +19,7 @@ pub(super) fn read_folder(source: Source) -> Result<Assembly, ReadError> {
     for entry in std::fs::read_dir(source.path).map_err(io_error(source.path))? {
         let file = entry.map_err(io_error(source.path))?.path();
         // A dangling link and a pipe are rejected when they are read, not skipped.
-        if !file.is_dir() && Format::of_path(&file).is_ok() {
+        if !file.is_dir() && Format::from_path(&file).is_ok() {
             files.push(file);
         } else {
             others.count_entry(&file);
@@ -69,8 +69,8 @@ impl UnitOfFirst {
     fn world_from_mesh(&mut self, mesh: &Mesh) -> DAffine3 {
         let Some(own) = mesh.unit else { return DAffine3::IDENTITY };
         let metres = *self.metres.get_or_insert_with(|| {
-            self.name = Some(units::name(own).unwrap_or("m"));
-            if units::name(own).is_some() { own } else { 1.0 }
+            self.name = Some(units::unit_name(own).unwrap_or("m"));
+            if units::unit_name(own).is_some() { own } else { 1.0 }
         });
         if own == metres {
             DAffine3::IDENTITY
@@ -119,7 +119,7 @@ impl OtherEntries {
 
     /// Describes the folder's contents for the error that it has no mesh, with advice.
     fn contents_text(&self) -> String {
-        let none = format!("the folder has no {} file", Format::names("or"));
+        let none = format!("the folder has no {} file", Format::list_names("or"));
         let counted = |count: usize, what: &str| {
             if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
         };

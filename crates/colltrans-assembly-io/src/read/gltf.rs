@@ -19,10 +19,10 @@ use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::files::{Source, decode_percent, decode_uri};
-use super::{Budget, Draft, Names, Placed, assemble, contents_error, drafts, plain};
+use super::{Budget, Draft, Names, Placed, assemble, contents_error, drafts, json_error_reason};
 use crate::error::ReadError;
 use colltrans_assembly::Assembly;
-use colltrans_assembly::colour::on_screen;
+use colltrans_assembly::colour::linear_to_srgb;
 
 /// Maximum depth of nested nodes. Deeper ones are rejected as a possible cycle.
 const MAX_DEPTH: usize = 256;
@@ -45,7 +45,8 @@ pub(super) fn read_gltf(source: Source, bytes: &[u8]) -> Result<Assembly, ReadEr
     let path = source.path;
     let refused = |reason: String| contents_error(path, "glTF", reason);
     let (json, binary) = split_chunks(bytes).map_err(refused)?;
-    let document: Document = serde_json::from_slice(json).map_err(|e| refused(plain(&e)))?;
+    let document: Document =
+        serde_json::from_slice(json).map_err(|e| refused(json_error_reason(&e)))?;
     document.check_support().map_err(refused)?;
     let buffers = read_buffers(&source, &document, binary)?;
     let size = bytes.len() + buffers.iter().map(Vec::len).sum::<usize>();
@@ -413,7 +414,7 @@ impl Document {
             return None;
         }
         let factor = look.get("baseColorFactor")?.as_array()?;
-        let channel = |k: usize| Some(on_screen(factor.get(k)?.as_f64()?.clamp(0.0, 1.0)));
+        let channel = |k: usize| Some(linear_to_srgb(factor.get(k)?.as_f64()?.clamp(0.0, 1.0)));
         Some([channel(0)?, channel(1)?, channel(2)?])
     }
 }

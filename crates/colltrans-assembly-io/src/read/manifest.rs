@@ -12,12 +12,12 @@ use serde::{Deserialize, Deserializer};
 
 use super::files::Source;
 use super::{
-    Budget, Draft, Placed, Split, assemble, assembly_error, contents_error, file_stem, parse_mesh,
-    plain, reword_parser_message,
+    Budget, Draft, Placed, Split, assemble, assembly_error, contents_error, file_stem,
+    json_error_reason, parse_mesh, reword_parser_message,
 };
 use crate::error::ReadError;
 use colltrans_assembly::AssemblyError;
-use colltrans_assembly::constraints::WITHIN_DEGREES;
+use colltrans_assembly::constraints::DEFAULT_FORBIDDEN_DEGREES;
 use colltrans_assembly::roles::{PairFit, Role};
 use colltrans_assembly::units;
 use colltrans_assembly::{Assembly, Ignored};
@@ -78,7 +78,7 @@ struct NeverTaken {
 
 /// Returns the default of the field `within_degrees`.
 const fn default_within_degrees() -> f64 {
-    WITHIN_DEGREES
+    DEFAULT_FORBIDDEN_DEGREES
 }
 
 #[derive(Deserialize)]
@@ -153,9 +153,10 @@ pub(super) fn read_manifest(source: Source) -> Result<Assembly, ReadError> {
         })?
     } else {
         let place = |e: &serde_json::Error| format!("line {}, column {}", e.line(), e.column());
-        serde_json::from_str(&text).map_err(|e| contents_error(path, place(&e), plain(&e)))?
+        serde_json::from_str(&text)
+            .map_err(|e| contents_error(path, place(&e), json_error_reason(&e)))?
     };
-    let metres = manifest.unit.as_deref().and_then(units::metres);
+    let metres = manifest.unit.as_deref().and_then(units::unit_in_metres);
     let mut gathered =
         PartGatherer { budget: Budget::with_bytes(text.len()), metres, ..PartGatherer::default() };
     for (k, entry) in manifest.parts.iter().enumerate() {
@@ -163,7 +164,7 @@ pub(super) fn read_manifest(source: Source) -> Result<Assembly, ReadError> {
     }
     let PartGatherer { drafts, missing, left_out, notes, .. } = gathered;
     if !missing.is_empty() && !source.options.skip_missing {
-        return Err(ReadError::Missing { path: path.into(), missing });
+        return Err(ReadError::MissingMeshes { path: path.into(), missing });
     }
     let holds = match missing.len() {
         0 => "it lists no parts".to_owned(),
@@ -198,7 +199,7 @@ impl Manifest {
             None => part == name.trim(),
         };
         let is_there = |name: &String| {
-            !left_out.iter().any(|part| like(name, part)) || assembly.group(&[name]).is_ok()
+            !left_out.iter().any(|part| like(name, part)) || assembly.parts_named(&[name]).is_ok()
         };
         let mut dropped = Vec::new();
         let mut keep = |what: &str, names: &mut Vec<String>, fewest: usize| {

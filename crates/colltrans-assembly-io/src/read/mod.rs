@@ -32,14 +32,14 @@ use colltrans_mesh::Mesh;
 use colltrans_mesh::body::BodyOptions;
 
 use crate::error::ReadError;
-pub use crate::plain::plain;
+pub use crate::plain::json_error_reason;
 #[cfg(feature = "files")]
 use crate::plain::reword_parser_message;
 use colltrans_assembly::Assembly;
 use colltrans_assembly::AssemblyError;
 pub use drafts::Split;
 use drafts::{Draft, Placed, assemble};
-pub use files::{FileFault, Files};
+pub use files::{FileError, Files};
 use files::{NoFiles, Source};
 
 /// The geometry of a URDF link to read.
@@ -57,7 +57,8 @@ pub enum Geometry {
 #[non_exhaustive]
 pub struct ReadOptions {
     /// Package roots, in which `package://name/rest` is searched: as `name/rest`, then as `rest`, then with
-    /// fewer leading folders.
+    /// fewer leading folders. Meshes of URDF that do not exist relative to the source are searched likewise.
+    /// Sources may refer to files in these folders.
     pub packages: Vec<PathBuf>,
     /// Whether missing mesh files are skipped, with a note. Otherwise they are an error.
     pub skip_missing: bool,
@@ -177,7 +178,7 @@ fn is_known(path: &Path) -> bool {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     let extension = extension.to_ascii_lowercase();
     let sources = ["toml", "json", "urdf", "glb", "gltf", "3mf"];
-    sources.contains(&extension.as_str()) || colltrans_mesh::Format::of_path(path).is_ok()
+    sources.contains(&extension.as_str()) || colltrans_mesh::Format::from_path(path).is_ok()
 }
 
 /// Reads an assembly like [`read`], from a provider of files. The extension of `path`, the source, selects the
@@ -222,7 +223,10 @@ fn unknown_source(path: &Path) -> ReadError {
 /// [`ReadError`] if a file cannot be read, with the file and the place, if a joint has not exactly one degree
 /// of freedom (except fixed joints), or if the robot has no geometry.
 #[cfg(feature = "files")]
-pub fn robot(path: impl AsRef<Path>, options: &ReadOptions) -> Result<crate::Robot, ReadError> {
+pub fn read_robot(
+    path: impl AsRef<Path>,
+    options: &ReadOptions,
+) -> Result<crate::Robot, ReadError> {
     let path = path.as_ref();
     let folders = files::Folders::for_source(path, options);
     robot::read_robot(Source::new(path, options, &files::SourceAndFiles { path, files: &folders }))
@@ -233,7 +237,7 @@ pub fn robot(path: impl AsRef<Path>, options: &ReadOptions) -> Result<crate::Rob
 /// # Errors
 /// [`ReadError`] if the file cannot be read, with the file and the place.
 #[cfg(feature = "files")]
-pub fn disabled(path: impl AsRef<Path>) -> Result<Vec<[String; 2]>, ReadError> {
+pub fn read_disabled_pairs(path: impl AsRef<Path>) -> Result<Vec<[String; 2]>, ReadError> {
     let (path, options) = (path.as_ref(), ReadOptions::default());
     let folders = files::Folders::for_source(path, &options);
     srdf::read_disabled_pairs(&Source::new(
@@ -286,15 +290,15 @@ fn contents_error(
 /// Parses a mesh file. Its extension selects the format.
 #[cfg(feature = "files")]
 fn parse_mesh(path: &Path, bytes: Vec<u8>) -> Result<Mesh, ReadError> {
-    let format = colltrans_mesh::Format::of_path(path)?;
+    let format = colltrans_mesh::Format::from_path(path)?;
     Ok(colltrans_mesh::parse(format, bytes, path)?)
 }
 
 /// Maximum number of nodes, components, links or parts of a source, each counted as often as it is placed.
-pub const MOST_PLACED: usize = 1 << 16;
+pub const MAX_PLACED: usize = 1 << 16;
 /// Maximum number of placed facets beyond one per byte of the files. It bounds sources that place the same
 /// shape very often.
-pub const MOST_REPEATED: usize = 1 << 23;
+pub const MAX_REPEATED: usize = 1 << 23;
 
 /// Counts what a source places before it is built, because a few lines can place a shape arbitrarily often.
 #[derive(Default)]
@@ -323,9 +327,9 @@ impl Budget {
     /// Counts a placed node, component, link or part.
     fn count_placed(&mut self) -> Result<(), String> {
         self.placed += 1;
-        if self.placed > MOST_PLACED {
+        if self.placed > MAX_PLACED {
             return Err(format!(
-                "more than {MOST_PLACED} nodes, components or parts are placed; split the source into smaller ones"
+                "more than {MAX_PLACED} nodes, components or parts are placed; split the source into smaller ones"
             ));
         }
         Ok(())
@@ -334,9 +338,9 @@ impl Budget {
     /// Counts placed facets.
     fn count_facets(&mut self, count: usize) -> Result<(), String> {
         self.facets += count;
-        if self.facets > self.bytes + MOST_REPEATED {
+        if self.facets > self.bytes + MAX_REPEATED {
             return Err(format!(
-                "{} facets are placed from files of {} bytes; accepted: one per byte and {MOST_REPEATED} \
+                "{} facets are placed from files of {} bytes; accepted: one per byte and {MAX_REPEATED} \
                  more",
                 self.facets, self.bytes
             ));

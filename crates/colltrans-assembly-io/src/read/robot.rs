@@ -17,7 +17,7 @@ use super::shapes::{Round, SIDES};
 use super::urdf::{self, PartGatherer};
 use super::{assembly_error, contents_error};
 use crate::error::ReadError;
-use crate::robot::{Kind, Link, Mimic, Robot, RobotJoint};
+use crate::robot::{JointKind, Link, Mimic, Robot, RobotJoint};
 use colltrans_assembly::AssemblyError;
 use colltrans_assembly::Piece;
 use colltrans_mesh::xml::Element;
@@ -37,7 +37,7 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
     let above: HashMap<&str, (&str, &urdf::Joint)> =
         joints.iter().map(|(name, joint)| (joint.child, (*name, joint))).collect();
     let names: Vec<&str> = element
-        .all("link")
+        .children_named("link")
         .map(|link| urdf::element_name(&source, link))
         .collect::<Result<_, _>>()?;
     for name in &names {
@@ -64,7 +64,7 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
     let mut gathered = PartGatherer::new(&source, bytes, Round::Circumscribed);
     let mut links = Vec::new();
     let mut notes = Vec::new();
-    for link in element.all("link") {
+    for link in element.children_named("link") {
         let name = urdf::element_name(&source, link)?;
         let pieces = gathered.link_pieces(link, name, DAffine3::IDENTITY)?;
         let mut bodies = Vec::new();
@@ -95,7 +95,7 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
         return Err(contents_error(source.path, "links", reason));
     }
     if !missing.is_empty() && !source.options.skip_missing {
-        return Err(ReadError::Missing { path: source.path.into(), missing });
+        return Err(ReadError::MissingMeshes { path: source.path.into(), missing });
     }
     notes.extend(missing.iter().map(|file| format!("{file} not found; left out")));
     if links.iter().all(|link| link.bodies.is_empty()) {
@@ -137,8 +137,9 @@ impl<'a> TreeBuilder<'a> {
         self.frames.push(Frame { parent: self.frame_of_link[joint.parent], origin, joint: moves });
         self.frame_of_link.insert(link, Some(frame));
         if let Some(kind) = kind {
-            let limits =
-                joint_limits(joint.element).map_err(refused)?.filter(|_| kind != Kind::Continuous);
+            let limits = joint_limits(joint.element)
+                .map_err(refused)?
+                .filter(|_| kind != JointKind::Continuous);
             self.joints.push(RobotJoint { name: name.into(), frame, kind, limits, mimic: None });
         }
         Ok(())
@@ -146,13 +147,13 @@ impl<'a> TreeBuilder<'a> {
 }
 
 /// Returns the kind of a joint (`None` if fixed) and its motion.
-fn joint_motion(element: &Element) -> Result<(Option<Kind>, Joint), String> {
-    let axis = match element.first("axis") {
+fn joint_motion(element: &Element) -> Result<(Option<JointKind>, Joint), String> {
+    let axis = match element.first_child("axis") {
         Some(axis) => axis.numbers::<3>("xyz")?.unwrap_or([1.0, 0.0, 0.0]),
         None => [1.0, 0.0, 0.0],
     };
     let axis = DVec3::from_array(axis);
-    let kind = element.need("type")?;
+    let kind = element.required("type")?;
     if matches!(kind, "revolute" | "continuous" | "prismatic")
         && !(axis.length() > 0.0 && axis.is_finite())
     {
@@ -160,9 +161,9 @@ fn joint_motion(element: &Element) -> Result<(Option<Kind>, Joint), String> {
     }
     match kind {
         "fixed" => Ok((None, Joint::Fixed)),
-        "revolute" => Ok((Some(Kind::Revolute), Joint::Turning(axis))),
-        "continuous" => Ok((Some(Kind::Continuous), Joint::Turning(axis))),
-        "prismatic" => Ok((Some(Kind::Prismatic), Joint::Sliding(axis))),
+        "revolute" => Ok((Some(JointKind::Revolute), Joint::Turning(axis))),
+        "continuous" => Ok((Some(JointKind::Continuous), Joint::Turning(axis))),
+        "prismatic" => Ok((Some(JointKind::Prismatic), Joint::Sliding(axis))),
         other => Err(format!(
             "unsupported type {other}; accepted: fixed, revolute, continuous, prismatic"
         )),
@@ -171,7 +172,7 @@ fn joint_motion(element: &Element) -> Result<(Option<Kind>, Joint), String> {
 
 /// Returns the limits of a joint. `None` if there are no limits, or both are 0.
 fn joint_limits(element: &Element) -> Result<Option<[f64; 2]>, String> {
-    let Some(limit) = element.first("limit") else { return Ok(None) };
+    let Some(limit) = element.first_child("limit") else { return Ok(None) };
     let lower = limit.numbers::<1>("lower")?.map_or(0.0, |[x]| x);
     let upper = limit.numbers::<1>("upper")?.map_or(0.0, |[x]| x);
     Ok((lower != 0.0 || upper != 0.0).then_some([lower, upper]))
@@ -187,8 +188,8 @@ fn set_mimics(
         joints.iter().enumerate().map(|(k, joint)| (joint.name.clone(), k)).collect();
     for RobotJoint { name, mimic, .. } in &mut joints {
         let refused = |reason: String| contents_error(source.path, format!("joint {name}"), reason);
-        let Some(found) = elements[name.as_str()].element.first("mimic") else { continue };
-        let of = found.need("joint").map_err(refused)?;
+        let Some(found) = elements[name.as_str()].element.first_child("mimic") else { continue };
+        let of = found.required("joint").map_err(refused)?;
         let place = places.get(of).copied();
         let joint =
             place.ok_or_else(|| refused(format!("it mimics {of}, which is not a moving joint")))?;
@@ -214,7 +215,7 @@ fn set_mimics(
 }
 
 /// Builds a body from a piece, in the frame of its link: convex if the piece is, otherwise a solid.
-fn body_of_piece(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>, body::Refused> {
+fn body_of_piece(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>, body::BodyError> {
     let mut mesh = piece.mesh.clone();
     for vertex in &mut mesh.vertices {
         *vertex = piece.world_from_piece.transform_point3(*vertex);
@@ -222,12 +223,14 @@ fn body_of_piece(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>
     if piece.world_from_piece.matrix3.determinant() < 0.0 {
         mesh.faces.iter_mut().for_each(|face| face.reverse());
     }
-    crate::robot::body_of(&mesh, options)
+    crate::robot::body_from_mesh(&mesh, options)
 }
 
 /// Returns notes on the round shapes of a link, with the error of the polyhedra.
 fn round_shape_notes(link: &Element) -> impl Iterator<Item = String> + '_ {
-    let shapes = link.all("collision").filter_map(|of| of.first("geometry")?.children.first());
+    let shapes = link
+        .children_named("collision")
+        .filter_map(|of| of.first_child("geometry")?.children.first());
     shapes.filter_map(move |shape| {
         let larger = match shape.name.as_str() {
             "cylinder" => Round::Circumscribed.cylinder_scale(),

@@ -142,8 +142,9 @@ mod tests {
         }
     }
 
-    /// Returns the smallest distance of a face's plane and the largest distance of a vertex, from the axis of a
-    /// cylinder (`flat`) or the centre of a sphere. The planes of a cylinder's end faces do not count.
+    /// Returns the smallest distance of the plane of a face, and the largest distance of a vertex. Distances are
+    /// from the axis of a cylinder (`flat`) or from the centre of a sphere. The end faces of a cylinder are left
+    /// out.
     fn distance_range(piece: &Piece, flat: bool) -> [f64; 2] {
         let Mesh { vertices, faces, .. } = &piece.mesh;
         let from_axis = |v: DVec3| if flat { v.truncate().length() } else { v.length() };

@@ -41,11 +41,11 @@ impl SlicerSettings {
     /// Adds the settings in a file.
     pub(super) fn add_file(&mut self, text: &str) {
         let Ok(file) = Element::parse(text) else { return };
-        for object in file.all("object") {
+        for object in file.children_named("object") {
             let Some(id) = object.get("id") else { continue };
             let whole = self.0.entry(id.to_owned()).or_default();
             whole.name = whole.name.take().or_else(|| metadata_value(object, "name"));
-            for part in object.all("part") {
+            for part in object.children_named("part") {
                 if let Some(id) = part.get("id") {
                     whole.parts.insert(
                         id.to_owned(),
@@ -53,7 +53,7 @@ impl SlicerSettings {
                     );
                 }
             }
-            for volume in object.all("volume") {
+            for volume in object.children_named("volume") {
                 let end = |key| volume.get(key).and_then(|text| text.parse::<usize>().ok());
                 if let (Some(first), Some(last)) = (end("firstid"), end("lastid")) {
                     let kind = metadata_value(volume, "volume_type");
@@ -105,7 +105,7 @@ impl BodySettings {
 
 /// Returns the value of a `metadata` child with this key; `None` if it is missing or blank.
 fn metadata_value(element: &Element, key: &str) -> Option<String> {
-    let found = element.all("metadata").find(|entry| entry.get("key") == Some(key));
+    let found = element.children_named("metadata").find(|entry| entry.get("key") == Some(key));
     let value = found.and_then(|entry| entry.get("value"));
     value.map(str::trim).filter(|value| !value.is_empty()).map(str::to_owned)
 }

@@ -16,10 +16,10 @@ pub(super) fn read_disabled_pairs(source: &Source) -> Result<Vec<[String; 2]>, R
     }
     let pair = |element: &Element| {
         let link = |what| {
-            let name = element.need(what).map(str::to_owned);
+            let name = element.required(what).map(str::to_owned);
             name.map_err(|e| contents_error(source.path, format!("SRDF: line {}", element.line), e))
         };
         Ok([link("link1")?, link("link2")?])
     };
-    robot.all("disable_collisions").map(pair).collect()
+    robot.children_named("disable_collisions").map(pair).collect()
 }

@@ -1,6 +1,6 @@
 //! Reads 3MF packages. Each item of the build is a part, with its transform applied, in the unit of the file.
 //!
-//! - An object of components becomes one part for each mesh below it, or one part in total ([`Split::Never`]).
+//! - An object of components becomes one part for each mesh below it, or one part in total ([`Split::ForbiddenDirection`]).
 //!   An object without a name takes the name of the object that contains it.
 //! - A transform is twelve numbers, the rows of a matrix that is multiplied by a row vector from the left (core
 //!   specification, 3.3).
@@ -101,7 +101,7 @@ pub(super) fn read_package(source: Source) -> Result<Assembly, ReadError> {
     let (mut names, mut last) = (Names::default(), None);
     for (k, name, piece) in placed {
         match drafts.last_mut() {
-            // With `Split::Never` all pieces of an item form one part.
+            // With `Split::ForbiddenDirection` all pieces of an item form one part.
             Some(draft) if source.options.split == Split::Never && last == Some(k) => {
                 draft.pieces.push(piece);
             }
@@ -143,7 +143,7 @@ fn mesh_bodies(
         return vec![(name.to_owned(), Arc::clone(mesh))];
     };
     let body_of_face = runs.iter().zip(0..).flat_map(|((run, _), k)| run.clone().map(move |_| k));
-    let meshes = mesh.picked(&body_of_face.collect::<Vec<u32>>(), runs.len());
+    let meshes = mesh.split_faces(&body_of_face.collect::<Vec<u32>>(), runs.len());
     let mut found = Vec::new();
     for ((_, body), mesh) in runs.iter().zip(meshes) {
         let name = body.name.as_deref().unwrap_or(name).to_owned();
@@ -261,7 +261,7 @@ impl<'a> Package<'a> {
             )));
         }
         self.left -= bytes.len() as u64;
-        colltrans_mesh::file::decoded(bytes).map_err(|e| refused(e.to_string()))
+        colltrans_mesh::file::decode_text(bytes).map_err(|e| refused(e.to_string()))
     }
 }
 
@@ -483,7 +483,7 @@ struct Parser {
 
 impl Parser {
     /// Parses a model file.
-    fn parse_model(text: &str) -> Result<Model, xml::Fault> {
+    fn parse_model(text: &str) -> Result<Model, xml::XmlError> {
         let mut reader = NsReader::from_str(text);
         let mut lines = Lines::new(text);
         let mut parser =
@@ -492,7 +492,7 @@ impl Parser {
         loop {
             let line = lines.at(reader.buffer_position());
             let place = || format!("line {line}");
-            let event = reader.read_event().map_err(|e| (place(), xml::told(&e)))?;
+            let event = reader.read_event().map_err(|e| (place(), xml::parse_error_reason(&e)))?;
             match event {
                 Event::Start(tag) => {
                     depth += 1;

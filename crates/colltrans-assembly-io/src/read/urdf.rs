@@ -20,20 +20,20 @@ pub(super) fn read_urdf(source: Source) -> Result<Assembly, ReadError> {
     let joints = read_joints(&source, &robot)?;
     let places = link_poses(&source, &robot, &joints)?;
     let mut gathered = PartGatherer::new(&source, bytes, Round::Inscribed);
-    for link in robot.all("link") {
+    for link in robot.children_named("link") {
         let name = element_name(&source, link)?;
         gathered.add_link(link, name, places[name])?;
     }
     let PartGatherer { drafts, missing, mut notes, .. } = gathered;
     if !missing.is_empty() && !source.options.skip_missing {
-        return Err(ReadError::Missing { path: source.path.into(), missing });
+        return Err(ReadError::MissingMeshes { path: source.path.into(), missing });
     }
     notes.extend(missing.iter().map(|file| format!("{file} not found; left out")));
     let which = match source.options.geometry {
         Geometry::Collision => "collision",
         Geometry::Visual => "visual",
     };
-    let links = robot.all("link").count();
+    let links = robot.children_named("link").count();
     let holds = match missing.len() {
         0 => format!("none of its {links} links has {which} geometry"),
         missing => format!("none of its {missing} referenced meshes was found"),
@@ -100,11 +100,11 @@ impl<'a> PartGatherer<'a> {
             Geometry::Visual => "visual",
         };
         let mut pieces = Vec::new();
-        for shown in link.all(which) {
+        for shown in link.children_named(which) {
             let refused =
                 |reason: String| contents_error(self.source.path, format!("link {name}"), reason);
             let at = world * element_pose(shown).map_err(refused)?;
-            let shape = shown.first("geometry").and_then(|g| g.children.first());
+            let shape = shown.first_child("geometry").and_then(|g| g.children.first());
             let shape =
                 shape.ok_or_else(|| refused(format!("a {which} element has no geometry")))?;
             match shape.name.as_str() {
@@ -132,7 +132,7 @@ impl<'a> PartGatherer<'a> {
     ) -> Result<Option<Piece>, ReadError> {
         let refused =
             |reason: String| contents_error(self.source.path, format!("link {link}"), reason);
-        let filename = mesh.need("filename").map_err(refused)?;
+        let filename = mesh.required("filename").map_err(refused)?;
         let scale = mesh.numbers::<3>("scale").map_err(refused)?.unwrap_or([1.0; 3]);
         let Some((file, bytes)) = find_mesh(self.source, filename)? else {
             self.missing.push(filename.to_owned());
@@ -151,7 +151,7 @@ impl<'a> PartGatherer<'a> {
 /// Builds a box, cylinder or sphere.
 fn primitive_piece(shape: &Element, round: Round, at: DAffine3) -> Result<Piece, String> {
     let number = |name: &str| -> Result<f64, String> {
-        shape.need(name)?;
+        shape.required(name)?;
         Ok(shape.numbers::<1>(name)?.map_or(0.0, |[x]| x))
     };
     let sound = |sizes: &[f64]| {
@@ -163,7 +163,7 @@ fn primitive_piece(shape: &Element, round: Round, at: DAffine3) -> Result<Piece,
     };
     match shape.name.as_str() {
         "box" => {
-            shape.need("size")?;
+            shape.required("size")?;
             let size = shape.numbers::<3>("size")?.unwrap_or_default();
             sound(&size).map(|()| shapes::cuboid(DVec3::from_array(size), at))
         }
@@ -185,12 +185,12 @@ pub(super) fn element_name<'a>(
     element: &'a Element,
 ) -> Result<&'a str, ReadError> {
     let refused = |e| contents_error(source.path, format!("URDF: line {}", element.line), e);
-    element.need("name").map_err(refused)
+    element.required("name").map_err(refused)
 }
 
-/// Returns the pose of an element, the identity if it has no `element_pose`.
+/// Returns the pose of an element, the identity if it has no `origin`.
 pub(super) fn element_pose(element: &Element) -> Result<DAffine3, String> {
-    let Some(origin) = element.first("origin") else { return Ok(DAffine3::IDENTITY) };
+    let Some(origin) = element.first_child("origin") else { return Ok(DAffine3::IDENTITY) };
     let xyz = origin.numbers::<3>("xyz")?.unwrap_or_default();
     let rpy = origin.numbers::<3>("rpy")?.unwrap_or_default();
     let matrix = match origin.numbers::<4>("quat_xyzw")? {
@@ -222,13 +222,14 @@ pub(super) fn read_joints<'a>(
     robot: &'a Element,
 ) -> Result<Joints<'a>, ReadError> {
     let mut joints = HashMap::new();
-    for element in robot.all("joint") {
+    for element in robot.children_named("joint") {
         let name = element_name(source, element)?;
         let refused = |reason: String| contents_error(source.path, format!("joint {name}"), reason);
         let link = |what: &'static str| {
-            let of =
-                element.first(what).ok_or_else(|| refused(format!("missing element {what}")))?;
-            of.need("link").map_err(refused)
+            let of = element
+                .first_child(what)
+                .ok_or_else(|| refused(format!("missing element {what}")))?;
+            of.required("link").map_err(refused)
         };
         let origin = element_pose(element).map_err(refused)?;
         let joint = Joint { element, parent: link("parent")?, child: link("child")?, origin };
@@ -257,7 +258,7 @@ pub(super) fn link_poses<'a>(
     joints: &Joints<'a>,
 ) -> Result<HashMap<&'a str, DAffine3>, ReadError> {
     let mut links: HashMap<&str, Option<(&str, &Joint)>> = HashMap::new();
-    for link in robot.all("link") {
+    for link in robot.children_named("link") {
         let name = element_name(source, link)?;
         if links.insert(name, None).is_some() {
             return Err(contents_error(
@@ -267,7 +268,7 @@ pub(super) fn link_poses<'a>(
             ));
         }
     }
-    for joint in robot.all("joint").filter_map(|joint| joint.get("name")) {
+    for joint in robot.children_named("joint").filter_map(|joint| joint.get("name")) {
         let refused = |reason| contents_error(source.path, format!("joint {joint}"), reason);
         let Joint { parent, child, .. } = joints[joint];
         for link in [parent, child] {
@@ -280,7 +281,7 @@ pub(super) fn link_poses<'a>(
         }
     }
     let mut places: HashMap<&str, DAffine3> = HashMap::new();
-    for link in robot.all("link").filter_map(|link| link.get("name")) {
+    for link in robot.children_named("link").filter_map(|link| link.get("name")) {
         // Collects the joints up to a placed link or a root, then places the links downwards.
         let (mut above, mut name) = (Vec::new(), link);
         let mut at = loop {
@@ -317,9 +318,9 @@ fn joint_motion(
     name: &str,
     joint: &Joint,
 ) -> Result<DAffine3, String> {
-    let kind = joint.element.need("type")?;
+    let kind = joint.element.required("type")?;
     let position = joint_position(source, joints, name, 8)?;
-    let axis = match joint.element.first("axis") {
+    let axis = match joint.element.first_child("axis") {
         Some(axis) => axis.numbers::<3>("xyz")?.unwrap_or([1.0, 0.0, 0.0]),
         None => [1.0, 0.0, 0.0],
     };
@@ -346,9 +347,9 @@ fn joint_position(
     if let Some(given) = source.options.joints.get(name) {
         return Ok(*given);
     }
-    let mimic = joints.get(name).and_then(|joint| joint.element.first("mimic"));
+    let mimic = joints.get(name).and_then(|joint| joint.element.first_child("mimic"));
     let Some(mimic) = mimic.filter(|_| depth > 0) else { return Ok(0.0) };
-    let value = joint_position(source, joints, mimic.need("joint")?, depth - 1)?;
+    let value = joint_position(source, joints, mimic.required("joint")?, depth - 1)?;
     let number = |name: &str, default: f64| {
         mimic.numbers::<1>(name).map(|found| found.map_or(default, |[x]| x))
     };

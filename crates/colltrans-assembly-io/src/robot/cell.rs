@@ -35,10 +35,10 @@ impl Cell {
     /// Builds a cell and selects the pairs of bodies to check.
     ///
     /// Each link that a joint moves is checked against every scene body. Links are checked against each other
-    /// according to [`Robot::pairs`].
+    /// according to [`Robot::checked_pairs`].
     ///
     /// # Errors
-    /// [`RobotError::Unknown`] if `listed` names a link that does not exist, and [`RobotError::Twice`] if two
+    /// [`RobotError::Unknown`] if `listed` names a link that does not exist, and [`RobotError::DuplicateName`] if two
     /// links or scene bodies have the same name.
     pub fn new(
         robot: Robot,
@@ -49,7 +49,7 @@ impl Cell {
         let links = robot.links().iter().map(|link| &link.name);
         let around: Vec<&String> = links.chain(&scene_names).collect();
         if let Some(name) = first_duplicate(&around) {
-            return Err(RobotError::Twice { name: (*name).clone() });
+            return Err(RobotError::DuplicateName { name: (*name).clone() });
         }
         let things = NamedBodies::new(&robot, scene_names);
         let mut notes = Vec::new();
@@ -73,10 +73,10 @@ impl Cell {
     ///
     /// # Errors
     /// [`RobotError::Unknown`] if no link or scene body has one of the names.
-    pub fn ignoring(mut self, pairs: &[[String; 2]]) -> Result<Self, RobotError> {
+    pub fn without_pairs(mut self, pairs: &[[String; 2]]) -> Result<Self, RobotError> {
         for [a, b] in pairs {
             for name in [a, b] {
-                if !self.names.contains(name) && self.robot.link(name).is_err() {
+                if !self.names.contains(name) && self.robot.link_index(name).is_err() {
                     let known = self.known_names().join(", ");
                     return Err(RobotError::Unknown { name: name.clone(), known });
                 }
@@ -116,7 +116,7 @@ impl Cell {
     }
 
     /// Returns the names of the links whose meshes are replaced by their convex hulls.
-    pub fn hulls(&self) -> Vec<String> {
+    pub fn hull_links(&self) -> Vec<String> {
         let links =
             self.robot.links().iter().filter(|link| link.is_hull && !link.bodies.is_empty());
         links.map(|link| link.name.clone()).collect()
@@ -139,26 +139,30 @@ impl Cell {
     ///
     /// # Errors
     /// [`RobotError::NoPair`] if there is no such pair, because every path would then be free.
-    pub fn with_a_pair(self) -> Result<Self, RobotError> {
+    pub fn require_pair(self) -> Result<Self, RobotError> {
         if self.pairs.is_empty() { Err(RobotError::NoPair) } else { Ok(self) }
     }
 
-    /// Builds the query about a path: whether bodies of a pair come nearer than `keep`, a length, on the way.
+    /// Builds the query whether the distance of the bodies of a pair falls below `keep`, a length, on a path.
     ///
     /// # Errors
     /// The errors of [`PathCast::new`], and [`PathError`] if the gap is invalid.
-    pub fn along<'a>(&'a self, path: &'a JointPath, keep: f64) -> Result<PathCast<'a>, PathError> {
+    pub fn path_cast<'a>(
+        &'a self,
+        path: &'a JointPath,
+        keep: f64,
+    ) -> Result<PathCast<'a>, PathError> {
         let links = self.robot.links().iter();
         let carried = links.flat_map(|link| link.bodies.iter().map(|body| (link.frame, body)));
         let carried =
             carried.map(|(frame, body)| PathBody { frame, placed: body.at(Pose::IDENTITY) });
-        let scene = self.scene.iter().map(|body| PathBody::standing(body.at(Pose::IDENTITY)));
+        let scene = self.scene.iter().map(|body| PathBody::at_rest(body.at(Pose::IDENTITY)));
         let bodies = carried.chain(scene).collect();
-        PathCast::new(self.robot.mechanism(), path, bodies, self.pairs.clone())?.keeping(keep)
+        PathCast::new(self.robot.mechanism(), path, bodies, self.pairs.clone())?.with_min_gap(keep)
     }
 
     /// Returns the message of an error with the names of bodies and joints instead of their numbers.
-    pub fn words(&self, error: &PathError) -> String {
+    pub fn error_message(&self, error: &PathError) -> String {
         match error {
             PathError::Query { pair, reason } => {
                 let [a, b] = pair.map(|k| self.names[k].as_str());
@@ -192,9 +196,9 @@ impl NamedBodies {
         listed: Option<&[[String; 2]]>,
         notes: &mut Vec<String>,
     ) -> Result<Vec<[usize; 2]>, RobotError> {
-        let mut things = robot.pairs(listed)?;
+        let mut things = robot.checked_pairs(listed)?;
         if listed.is_none() {
-            let skipped = robot.pairs(Some(&[]))?.len() - things.len();
+            let skipped = robot.checked_pairs(Some(&[]))?.len() - things.len();
             let pairs = if skipped == 1 { "pair of links" } else { "pairs of links" };
             if skipped > 0 {
                 notes.push(format!(
@@ -210,7 +214,7 @@ impl NamedBodies {
         }
         let mut rests = false;
         for link in 0..self.links {
-            let moves = robot.moving_between(link, None) > 0;
+            let moves = robot.joints_between(link, None) > 0;
             for mesh in self.links..self.names.len() {
                 if moves {
                     things.push([link, mesh]);

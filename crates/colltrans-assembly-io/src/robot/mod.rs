@@ -1,9 +1,9 @@
 //! A robot: links with bodies, joints with names, and the pairs of links to check.
 //!
 //! A path has one value for each independent joint, in radians or metres. A joint is independent if it moves
-//! and mimics no other joint. Pairs of links between which no joint moves are never checked. Pairs with one
-//! such joint between them are checked only if an SRDF file lists the pairs to skip, because neighbours touch
-//! by design.
+//! and mimics no other joint. Pairs of links between which no joint moves are never checked. Pairs with exactly
+//! one moving joint between them are checked only if an SRDF file lists the pairs to skip, because neighbours
+//! touch by design.
 
 mod cell;
 mod path;
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use colltrans::AnyBody;
 use colltrans::motion::path::Mechanism;
 use colltrans_mesh::Mesh;
-use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused};
+use colltrans_mesh::body::{self, BodyError, BodyOptions, Loaded};
 use thiserror::Error;
 
 pub use cell::Cell;
@@ -55,7 +55,7 @@ pub struct RobotJoint {
     /// The frame of the mechanism that the joint moves.
     pub frame: usize,
     /// The kind of motion.
-    pub kind: Kind,
+    pub kind: JointKind,
     /// The lower and the upper limit, in radians or metres.
     pub limits: Option<[f64; 2]>,
     /// The joint that this one mimics, if it is not independent.
@@ -64,7 +64,7 @@ pub struct RobotJoint {
 
 /// The kind of motion of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum JointKind {
     /// Rotates within limits.
     Revolute,
     /// Rotates without limits.
@@ -135,7 +135,7 @@ pub enum RobotError {
     NoPair,
     /// Two links or scene bodies have the same name.
     #[error("duplicate name {name} of a link or scene body; rename one of them")]
-    Twice {
+    DuplicateName {
         /// The name.
         name: String,
     },
@@ -155,8 +155,8 @@ pub enum RobotError {
 /// Builds a body from a mesh: a convex polyhedron if the mesh is convex, otherwise a solid, which may be open.
 ///
 /// # Errors
-/// [`Refused`] if neither can be built, with the defects of the surface.
-pub fn body_of(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<AnyBody>, Refused> {
+/// [`BodyError`] if neither can be built, with the defects of the surface.
+pub fn body_from_mesh(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<AnyBody>, BodyError> {
     if let Ok(Loaded { body, precision, notes }) = body::convex(mesh, options) {
         return Ok(Loaded { body: body.into(), precision, notes });
     }
@@ -197,7 +197,7 @@ impl Robot {
 
     /// Returns the number of moving joints between two links, or between a link and the world if `other` is
     /// `None`.
-    pub fn moving_between(&self, link: usize, other: Option<usize>) -> usize {
+    pub fn joints_between(&self, link: usize, other: Option<usize>) -> usize {
         let above = |frame: Option<usize>| {
             let parent = |k: &usize| self.mechanism.frames()[*k].parent;
             std::iter::successors(frame, parent).collect::<Vec<usize>>()
@@ -217,10 +217,13 @@ impl Robot {
     ///
     /// # Errors
     /// [`RobotError::Unknown`] if no link has a listed name.
-    pub fn pairs(&self, listed: Option<&[[String; 2]]>) -> Result<Vec<[usize; 2]>, RobotError> {
+    pub fn checked_pairs(
+        &self,
+        listed: Option<&[[String; 2]]>,
+    ) -> Result<Vec<[usize; 2]>, RobotError> {
         let mut ignored = Vec::new();
         for names in listed.unwrap_or_default() {
-            let [a, b] = [self.link(&names[0])?, self.link(&names[1])?];
+            let [a, b] = [self.link_index(&names[0])?, self.link_index(&names[1])?];
             ignored.push([a.min(b), a.max(b)]);
         }
         let has = |k: &usize| !self.links[*k].bodies.is_empty();
@@ -230,7 +233,7 @@ impl Robot {
             (0..count).filter(has).flat_map(|a| (a + 1..count).filter(has).map(move |b| [a, b]));
         Ok(all
             .filter(|pair| !ignored.contains(pair))
-            .filter(|[a, b]| self.moving_between(*a, Some(*b)) >= least)
+            .filter(|[a, b]| self.joints_between(*a, Some(*b)) >= least)
             .collect())
     }
 
@@ -238,7 +241,7 @@ impl Robot {
     ///
     /// # Errors
     /// [`RobotError::Unknown`] if no link has this name.
-    pub fn link(&self, name: &str) -> Result<usize, RobotError> {
+    pub fn link_index(&self, name: &str) -> Result<usize, RobotError> {
         let found = self.links.iter().position(|link| link.name == name);
         found.ok_or_else(|| {
             let names: Vec<&str> = self.links.iter().map(|link| link.name.as_str()).collect();

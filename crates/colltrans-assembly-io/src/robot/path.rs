@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use colltrans::motion::path::JointPath;
 
-use super::{Kind, Robot, RobotError, RobotJoint, Table};
+use super::{JointKind, Robot, RobotError, RobotJoint, Table};
 
 /// The source of a joint's values.
 #[derive(Debug, Clone, Copy)]
@@ -23,7 +23,7 @@ impl Robot {
     /// # Errors
     /// [`RobotError`] if a joint has no values, a column names no independent joint, rows have a wrong length,
     /// or times do not increase.
-    pub fn path(
+    pub fn joint_path(
         &self,
         table: &Table,
         rest: &BTreeMap<String, f64>,
@@ -32,11 +32,11 @@ impl Robot {
         let rows = table.rows.iter().map(|row| self.joint_values(row, &sources)).collect();
         let path = match &table.times {
             Some(times) => JointPath::new(times.clone(), rows)?,
-            None => JointPath::evenly(rows)?,
+            None => JointPath::at_unit_times(rows)?,
         };
         let beyond = self.joints.iter().enumerate();
         let beyond = beyond.filter_map(|(k, joint)| exceeded_limits_note(joint, k, &path));
-        let notes = table.straight().into_iter().chain(beyond).collect();
+        let notes = table.unused_note().into_iter().chain(beyond).collect();
         Ok((path, notes))
     }
 
@@ -109,7 +109,7 @@ fn exceeded_limits_note(joint: &RobotJoint, column: usize, path: &JointPath) -> 
     let beyond = |row: &&Vec<f64>| !(lower..=upper).contains(&row[column]);
     let count = path.rows().iter().filter(beyond).count();
     let first = path.rows().iter().position(|row| beyond(&row))?;
-    let unit = if joint.kind == Kind::Prismatic { "m" } else { "rad" };
+    let unit = if joint.kind == JointKind::Prismatic { "m" } else { "rad" };
     let (value, of) = (path.rows()[first][column], path.rows().len());
     Some(format!(
         "joint {} exceeds its limits, {lower} to {upper} {unit}, in {count} of {of} rows; first: {value} in \

@@ -1,11 +1,11 @@
 //! Reads rows of joint values from CSV or JSON.
 //!
-//! - CSV: comma-separated numbers, one row a line. If the first line has no numbers, it names the columns, one
-//!   of which may be `time`. Empty lines, and text after `#`, are ignored.
+//! - CSV: comma-separated numbers, one row in each line. If the first line has no numbers, it names the columns,
+//!   one of which may be `time`, `t` or `time_from_start`. Empty lines, and text after `#`, are ignored.
 //! - JSON: a list of rows, a ROS trajectory `{"joint_names": [..], "points": [{"positions": [..],
 //!   "time_from_start": ..}]}`, or the `MoveIt` form `{"joint_trajectory": {..}}`.
 //!
-//! Velocities, accelerations and efforts of points are not used; [`Table::unused`] names those that a file has.
+//! Velocities, accelerations and efforts of points are not used; [`Table::unused_fields`] names those that a file has.
 
 use serde::Deserialize;
 use thiserror::Error;
@@ -20,14 +20,14 @@ pub struct Table {
     /// The rows.
     pub rows: Vec<Vec<f64>>,
     /// The fields of a trajectory that are not used: velocities, accelerations, efforts.
-    pub unused: Vec<&'static str>,
+    pub unused_fields: Vec<&'static str>,
 }
 
 impl Table {
     /// Returns a note that the rows are joined by straight segments, although the file has derivatives as well;
     /// `None` if it has none.
-    pub fn straight(&self) -> Option<String> {
-        let (last, before) = self.unused.split_last()?;
+    pub fn unused_note(&self) -> Option<String> {
+        let (last, before) = self.unused_fields.split_last()?;
         let names = match before {
             [] => (*last).to_owned(),
             before => format!("{} and {last}", before.join(", ")),
@@ -137,7 +137,7 @@ impl Table {
             0 => "JSON".into(),
             line => format!("line {line} column {}", e.column()),
         };
-        let at = |e: &serde_json::Error| table_error(place(e), crate::plain::plain(e));
+        let at = |e: &serde_json::Error| table_error(place(e), crate::plain::json_error_reason(e));
         let read: JsonTable = serde_json::from_str(text)
             .map_err(|e| first_invalid_point(text).unwrap_or_else(|| at(&e)))?;
         let Trajectory { joint_names: names, points } = match read {
@@ -177,8 +177,13 @@ impl Table {
                 format!("{found} positions, expected {wanted}, one for each of joint_names");
             return Err(table_error(format!("points[{k}]"), reason));
         }
-        Self { names: Some(names), times: (timed > 0).then_some(times), rows, unused }
-            .check_row_lengths()
+        Self {
+            names: Some(names),
+            times: (timed > 0).then_some(times),
+            rows,
+            unused_fields: unused,
+        }
+        .check_row_lengths()
     }
 
     /// Returns the table if all rows have the same number of values, which is that of the names if there are
@@ -212,7 +217,7 @@ fn first_invalid_point(text: &str) -> Option<TableError> {
     let point_error = |point: &serde_json::Value| Point::deserialize(point).err();
     let (k, error) =
         points.iter().enumerate().find_map(|(k, point)| Some((k, point_error(point)?)))?;
-    Some(table_error(format!("points[{k}]"), crate::plain::plain(&error)))
+    Some(table_error(format!("points[{k}]"), crate::plain::json_error_reason(&error)))
 }
 
 #[derive(Deserialize)]
@@ -297,10 +302,10 @@ mod tests {
             {"positions": [2], "velocities": []}]}, "multi_dof_joint_trajectory": {"points": []}}"#;
         let table = Table::parse(ros).unwrap();
         assert_eq!(table.rows, [[1.0], [2.0]]);
-        assert_eq!(table.unused, ["velocities", "accelerations"]);
+        assert_eq!(table.unused_fields, ["velocities", "accelerations"]);
         let note = "rows are joined by straight segments; the velocities and accelerations in the file were not used";
-        assert_eq!(table.straight().as_deref(), Some(note));
-        assert_eq!(Table::parse("0,1\n").unwrap().straight(), None);
+        assert_eq!(table.unused_note().as_deref(), Some(note));
+        assert_eq!(Table::parse("0,1\n").unwrap().unused_note(), None);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use colltrans::{Aabb, Cast, Clearance, Pose, QueryError, Solid};
 use glam::DVec3;
 
 use super::Bodies;
-use crate::roles::Tolerated;
+use crate::roles::PairTolerance;
 use crate::threads::Thread;
 
 /// Shares of a motion at which overlap is tested again, independently of the motion cast.
@@ -14,12 +14,12 @@ const RECHECKED_SHARES: [f64; 6] = [0.01, 0.1, 0.3, 0.55, 0.8, 1.0];
 
 /// Outcome of the motion of a part along a screw, and then along a direction, against a fixed part.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Turned {
+pub(crate) enum ScrewOutcome {
     /// The parts never meet, neither on the motion nor along the direction from its end. Holds the number of
     /// node pairs that the search visited.
     Free(u64),
-    /// The parts do not meet before this share of the motion; 1 if they meet along the direction after its
-    /// end.
+    /// The parts meet, or the search is undecided. Holds the fraction of the motion up to which they do not
+    /// meet. It is 1 if the whole motion is free and the parts meet along the direction from its end.
     Blocked(f64),
     /// The parts overlap at the start of the motion. Holds the least tolerance that removes the overlap, if
     /// any.
@@ -28,63 +28,69 @@ pub(crate) enum Turned {
 
 impl Bodies<'_> {
     /// Returns the thread of two parts whose screw is tested as its core.
-    pub(crate) fn thread(&self, pair: [usize; 2]) -> Option<Thread> {
+    pub(crate) fn pair_thread(&self, pair: [usize; 2]) -> Option<Thread> {
         self.own_fit(pair).and_then(|own| own.thread)
     }
 
     /// Returns the best position of the screw in its hole; `None` if the thread has no helix or no profile.
-    pub(crate) fn seat(&self, pair: [usize; 2], thread: &Thread) -> Option<crate::threads::Seat> {
+    pub(crate) fn screw_seat(
+        &self,
+        pair: [usize; 2],
+        thread: &Thread,
+    ) -> Option<crate::threads::Seat> {
         let [a, b] = [pair[0].min(pair[1]), pair[0].max(pair[1])];
         thread.seat([a, b].map(|part| self.assembly().parts()[part].solid()))
     }
 
-    /// Moves the first part along a motion, and then along `d`, against the second one. With a tolerance both
-    /// parts are the given ones, shrunk by half of it; without one they are the bodies of this pair.
+    /// Moves the first part along a motion, and then along `d`, against the second one. With a tolerance, uses
+    /// the solids of the files, each shrunk by half of the tolerance. Without one, uses the bodies of this pair.
     ///
     /// # Errors
     /// The motion, the direction or the tolerance is out of range.
-    pub(crate) fn turned(
+    pub(crate) fn screw_outcome(
         &self,
         pair: [usize; 2],
         (motion, d): (&Motion, DVec3),
         tolerance: Option<f64>,
-    ) -> Result<Turned, QueryError> {
+    ) -> Result<ScrewOutcome, QueryError> {
         let [moving, fixed] = self.queried_solids(pair, tolerance);
-        let cast = MotionCast::new(moving.along(motion), fixed.at(Pose::IDENTITY))?;
+        let cast = MotionCast::new(moving.with_motion(motion), fixed.at(Pose::IDENTITY))?;
         let cast = match tolerance {
-            Some(tolerance) => cast.tolerating(tolerance)?,
-            None => cast.keeping(self.pair_fit(pair).min_gap())?,
+            Some(tolerance) => cast.with_tolerance(tolerance)?,
+            None => cast.with_min_gap(self.pair_fit(pair).min_gap())?,
         };
         let pairs = match cast.first_contact()? {
             MotionOutcome::Overlapping(_) => {
                 let found = cast.start_overlap()?;
-                return Ok(Turned::Overlapping(found.and_then(|found| found.least_tolerance)));
+                return Ok(ScrewOutcome::Overlapping(
+                    found.and_then(|found| found.least_tolerance),
+                ));
             }
             MotionOutcome::Contact(met)
             | MotionOutcome::Grazing(met)
             | MotionOutcome::Undecided(met) => {
-                return Ok(Turned::Blocked(met.lower));
+                return Ok(ScrewOutcome::Blocked(met.lower));
             }
             MotionOutcome::Free(free) => free.steps.nodes,
-            _ => return Ok(Turned::Blocked(0.0)),
+            _ => return Ok(ScrewOutcome::Blocked(0.0)),
         };
         // Overlap is tested again at a few places.
         for share in RECHECKED_SHARES {
             if self.cast_after_turning(pair, (motion, d), tolerance, share)?.overlaps() {
-                return Ok(Turned::Blocked(share));
+                return Ok(ScrewOutcome::Blocked(share));
             }
         }
         let beyond = self.cast_after_turning(pair, (motion, d), tolerance, 1.0)?;
         let goes_on = matches!(beyond.clearance()?, Clearance::Free(_));
-        Ok(if goes_on { Turned::Free(pairs) } else { Turned::Blocked(1.0) })
+        Ok(if goes_on { ScrewOutcome::Free(pairs) } else { ScrewOutcome::Blocked(1.0) })
     }
 
     /// Returns the share of a motion up to which the first part does not meet the second one, and the number
     /// of node pairs that the search visited. Returns `None` if the parts overlap at the start or the motion
     /// cannot be evaluated.
-    pub(crate) fn stopped(&self, pair: [usize; 2], motion: &Motion) -> Option<(f64, u64)> {
+    pub(crate) fn contact_share(&self, pair: [usize; 2], motion: &Motion) -> Option<(f64, u64)> {
         let [moving, fixed] = self.queried_solids(pair, None);
-        let cast = MotionCast::new(moving.along(motion), fixed.at(Pose::IDENTITY)).ok()?;
+        let cast = MotionCast::new(moving.with_motion(motion), fixed.at(Pose::IDENTITY)).ok()?;
         match cast.first_contact().ok()? {
             MotionOutcome::Free(free) => Some((1.0, free.steps.nodes)),
             MotionOutcome::Contact(met)
@@ -99,7 +105,7 @@ impl Bodies<'_> {
     ///
     /// # Errors
     /// The motion or the direction is out of range.
-    pub(crate) fn goes_on(
+    pub(crate) fn is_free_beyond(
         &self,
         pair: [usize; 2],
         along: (&Motion, DVec3),
@@ -125,10 +131,10 @@ impl Bodies<'_> {
         share: f64,
     ) -> Result<Cast<'_, Solid>, QueryError> {
         let [moving, fixed] = self.queried_solids(pair, tolerance);
-        let pose = motion.at(share).map_err(|_| QueryError::Direction { direction: d })?;
+        let pose = motion.pose_at(share).map_err(|_| QueryError::Direction { direction: d })?;
         let options = SolidOptions::default()
             .with_tolerance(tolerance.unwrap_or(0.0))
-            .with_keep(self.pair_fit(pair).min_gap());
+            .with_min_gap(self.pair_fit(pair).min_gap());
         Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), d)?.with_options(options)
     }
 
@@ -154,12 +160,17 @@ impl Bodies<'_> {
             z = [z[0].min(along), z[1].max(along)];
         }
         let ends = [z[0], z[1] + travel].map(|z| point + axis * z);
-        let swept = Aabb::of_points(ends).grown(radius * (1.0 + 1e-9));
-        swept.meets(&self.bounds(other))
+        let swept = Aabb::from_points(ends).expanded(radius * (1.0 + 1e-9));
+        swept.intersects(&self.bounds(other))
     }
 
     /// Checks whether a plan disregards contacts of two parts for a reason other than their thread.
-    pub(crate) fn is_let_pass(&self, [a, b]: [usize; 2], start: StartOverlap) -> bool {
-        !matches!(self.tolerated([a, b]), Some(Tolerated::Core(_))) && self.lets_pass(a, b, start)
+    pub(crate) fn disregards_other_contacts(
+        &self,
+        [a, b]: [usize; 2],
+        start: StartOverlap,
+    ) -> bool {
+        !matches!(self.tolerated_contacts([a, b]), Some(PairTolerance::Core(_)))
+            && self.disregards_contacts(a, b, start)
     }
 }

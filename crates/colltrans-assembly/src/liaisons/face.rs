@@ -1,9 +1,10 @@
 //! Flat faces: connected facets in one plane, and the sweep that intersects two of them.
 //!
 //! Two faces of many thin facets have about as many crossing pairs of facets as the product of their numbers.
-//! Therefore the intersection is found by a sweep over their *rims*, the edges that only one facet of the face has.
-//! Along an axis of the plane, both faces are divided into convex strips between two rims. A strip ends where a rim
-//! begins or ends. Strips of both faces at the same position are then intersected.
+//! Therefore the intersection is found by a sweep over their *rims*, the boundary edges: those that facets of the face
+//! use more often in one direction than in the other. Along an axis of the plane, each face is divided into convex
+//! strips between two rims. A strip ends where a rim begins or ends. Strips of both faces that overlap along this axis
+//! are then intersected.
 //!
 //! Notation: `n` is the unit normal of a face, that of its largest facet. `x, y` are coordinates in its plane; the
 //! sweep is along `x`. Facets are counter-clockwise, so the interior is above a rim that runs along `x` and below one
@@ -46,14 +47,14 @@ impl Face {
         });
         let rims: Vec<_> = alone.flatten().collect();
         let facets: Vec<Triangle> = facets.iter().map(|t| t.map(corner)).collect();
-        let bounds = Aabb::of_points(facets.iter().flatten().copied());
+        let bounds = Aabb::from_points(facets.iter().flatten().copied());
         Self { facets, bounds, normal, rims }
     }
 
     /// Returns the faces of the facets that meet a region, those of the largest facets first.
     pub(super) fn all_in(solid: &Solid, region: &Aabb, reach: f64) -> Vec<Self> {
         let corner = |v: u32| solid.vertices()[v as usize];
-        let within = |t: &[u32; 3]| Aabb::of_points(t.map(corner)).meets(region);
+        let within = |t: &[u32; 3]| Aabb::from_points(t.map(corner)).intersects(region);
         let facets: Vec<[u32; 3]> = solid.triangles().iter().copied().filter(within).collect();
         let areas: Vec<DVec3> = facets.iter().map(|t| twice_area(&t.map(corner))).collect();
         let mut order: Vec<usize> = (0..facets.len()).collect();

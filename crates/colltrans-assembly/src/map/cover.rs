@@ -2,15 +2,15 @@
 
 use std::sync::atomic::AtomicBool;
 
-use colltrans::free::{CellKind, FreeOptions, FreeRegion};
 use colltrans::record::FreeRecord;
+use colltrans::removal::directions::{CellKind, FreeOptions, FreeRegion};
 use colltrans::solid::StartOverlap;
 use glam::DVec3;
 
 use super::Region;
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
-use crate::free::Removal;
+use crate::free::RemovalPair;
 use crate::watch::Watch;
 
 /// Maximum number of box pairs that are visited for a map.
@@ -41,22 +41,22 @@ impl Cover {
         start: StartOverlap,
         watch: Watch,
     ) -> Result<Result<Self, String>, AssemblyError> {
-        watch.check()?;
+        watch.check_cancelled()?;
         if group.len() == bodies.len() {
             return Ok(Err("there are no other parts".to_owned()));
         }
-        let removal = match Removal::new(bodies, group) {
+        let removal = match RemovalPair::new(bodies, group) {
             Ok(removal) => removal,
             Err(error) => return Ok(Err(error.to_string())),
         };
         let never = AtomicBool::new(false);
         let options = FreeOptions::DEFAULT.with_looks(MAX_LOOKS).with_start_overlap(start);
-        let free = match removal.directions(options, watch.flag().unwrap_or(&never)) {
+        let free = match removal.free_directions(options, watch.cancel_flag().unwrap_or(&never)) {
             Err(AssemblyError::Cancelled) => return Err(AssemblyError::Cancelled),
             Err(error) => return Ok(Err(error.to_string())),
             Ok(free) => free,
         };
-        let record = removal.record(bodies, &free);
+        let record = removal.to_record(bodies, &free);
         let also = record.also_free.iter().copied().map(DVec3::from);
         let undecided = free.cells().filter(|cell| cell.kind == CellKind::Undecided);
         Ok(Ok(Self {

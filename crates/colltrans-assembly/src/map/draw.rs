@@ -6,12 +6,12 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
 
-use colltrans_picture::escaped;
+use colltrans_picture::escape_xml;
 use glam::{DVec2, DVec3};
 
 use super::outline::{arc_lines, is_inside, polygon_outlines};
 use super::{Cover, RemovalMap};
-use crate::rooms::PartRoom;
+use crate::travel::PartTravel;
 
 /// Colours of blocked directions, from short travel to long.
 const BLOCKED: [[u8; 3]; 8] = [
@@ -64,14 +64,14 @@ impl RemovalMap {
         let (t, weights) = self.sphere.locate(d);
         let corners = self.sphere.triangles[t].corners;
         // Free regions of a cover are drawn over this, so the nearest blocked corner decides.
-        let hidden = |k: &usize| self.cover.is_ok() && self.rooms[corners[*k] as usize].is_free();
+        let hidden = |k: &usize| self.cover.is_ok() && self.travels[corners[*k] as usize].is_free();
         let weight = |k: usize| if hidden(&k) { -1.0 } else { weights[k] };
         let nearest = (1..3).fold(0, |best, k| if weight(k) > weight(best) { k } else { best });
-        match self.rooms[corners[nearest] as usize] {
-            PartRoom::Free if self.cover.is_ok() => BLOCKED.len() - 1,
-            PartRoom::Free => 8,
-            PartRoom::Overlapping { .. } => 9,
-            PartRoom::Blocked { stop, .. } => distance_class(stop.distance() / self.size),
+        match self.travels[corners[nearest] as usize] {
+            PartTravel::Free if self.cover.is_ok() => BLOCKED.len() - 1,
+            PartTravel::Free => 8,
+            PartTravel::Overlapping { .. } => 9,
+            PartTravel::Blocked { stop, .. } => distance_class(stop.distance() / self.size),
         }
     }
 }
@@ -95,8 +95,8 @@ fn hex_color([r, g, b]: [u8; 3]) -> String {
 
 /// Renders the map as a PNG picture of `width` by `width / 2` pixels, transparent outside of the map.
 ///
-/// Isolated directions are white discs with a dark edge. The width is at least 16.
-pub fn png(map: &RemovalMap, width: u32) -> Vec<u8> {
+/// Isolated directions are white discs with a dark edge. A `width` below 16 is replaced by 16.
+pub fn render_png(map: &RemovalMap, width: u32) -> Vec<u8> {
     let (width, height) = (width.max(16), width.max(16) / 2);
     let mut pixels = vec![0_u8; (width * height * 4) as usize];
     let marks: Vec<DVec2> = map.isolated.iter().map(|d| map_position(*d)).collect();
@@ -188,7 +188,7 @@ const SCALE: f64 = 170.0;
 const MIDDLE: DVec2 = DVec2::new(360.0, 190.0);
 
 /// Renders the map as an SVG picture with axes, marks and a legend.
-pub fn svg(map: &RemovalMap, title: &str) -> String {
+pub fn render_svg(map: &RemovalMap, title: &str) -> String {
     let mut text = String::from(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 -14 720 470\" \
          font-family=\"sans-serif\" font-size=\"13\">\n<rect y=\"-14\" width=\"720\" height=\"470\" \
@@ -225,7 +225,7 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
     let _ = writeln!(
         text,
         "<text x=\"360\" y=\"4\" text-anchor=\"middle\" font-weight=\"bold\">{}</text>\n</svg>",
-        escaped(title)
+        escape_xml(title)
     );
     text
 }

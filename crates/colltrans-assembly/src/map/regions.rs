@@ -5,8 +5,8 @@
 
 use glam::DVec3;
 
-use crate::rooms::PartRoom;
 use crate::sphere::Sphere;
+use crate::travel::PartTravel;
 
 /// A connected set of free directions.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,10 +21,10 @@ pub struct Region {
     pub border: Vec<DVec3>,
 }
 
-pub(super) fn connected_regions(sphere: &Sphere, rooms: &[PartRoom]) -> Vec<Region> {
+pub(super) fn connected_regions(sphere: &Sphere, rooms: &[PartTravel]) -> Vec<Region> {
     let free = |k: u32| rooms[k as usize].is_free();
     let mut set = DisjointSets::new(rooms.len());
-    for t in sphere.leaves() {
+    for t in sphere.leaf_triangles() {
         let [a, b, c] = sphere.triangles[t].corners;
         for (a, b) in [(a, b), (b, c), (c, a)] {
             if free(a) && free(b) {
@@ -33,9 +33,9 @@ pub(super) fn connected_regions(sphere: &Sphere, rooms: &[PartRoom]) -> Vec<Regi
         }
     }
     let mut found: Vec<(u32, RegionSums)> = Vec::new();
-    for t in sphere.leaves() {
+    for t in sphere.leaf_triangles() {
         let corners = sphere.triangles[t].corners;
-        let share = sphere.area(t) / 3.0;
+        let share = sphere.solid_angle(t) / 3.0;
         for k in corners.into_iter().filter(|&k| free(k)) {
             let root = set.find_root(k);
             let place = found.iter().position(|f| f.0 == root).unwrap_or_else(|| {

@@ -1,7 +1,8 @@
 //! Search for a removal direction of a movable group that no sample of the sphere separates.
 //!
 //! For closed parts without exceptions, all free directions are computed. The result is the free direction farthest
-//! from the border of its region. Otherwise, and if the computation leaves directions undecided, samples are refined.
+//! from the border of its region. Otherwise, and if the computation finds no free region but leaves directions
+//! undecided, samples are refined.
 //!
 //! Triangles of the sphere are subdivided where outcomes change: where different parts block their corners, or at
 //! different distances. Wide triangles with long travel come first, because an exit lies between two obstacles and a
@@ -12,16 +13,16 @@
 
 use std::sync::atomic::AtomicBool;
 
-use colltrans::free::FreeOptions;
+use colltrans::removal::directions::FreeOptions;
 use colltrans::solid::Workspace;
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{MapOptions, Mapper};
-use crate::bodies::{Bodies, Room};
+use crate::bodies::{Bodies, FreeTravel};
 use crate::error::AssemblyError;
-use crate::free::Removal;
-use crate::rooms::PartRoom;
+use crate::free::RemovalPair;
+use crate::travel::PartTravel;
 use crate::watch::Watch;
 use crate::witness::Witnesses;
 
@@ -45,7 +46,7 @@ const MAX_LOOKS: u64 = 2_000_000;
 ///
 /// If the free directions are decided exactly, `None` means that no region of free directions exists. Otherwise it
 /// means that none of the tested directions (about 2,000 at most) is free, or that the group is held too closely.
-pub(crate) fn way_out(
+pub(crate) fn find_removal_direction(
     bodies: &Bodies,
     group: &[usize],
     others: &[bool],
@@ -56,17 +57,17 @@ pub(crate) fn way_out(
         return Ok(exact);
     }
     let mut mapper = Mapper::new(bodies, group, others.to_vec(), options, watch);
-    let bounds = group.iter().map(|&k| bodies.bounds(k)).reduce(|a, b| a.join(&b));
+    let bounds = group.iter().map(|&k| bodies.bounds(k)).reduce(|a, b| a.union(&b));
     let size = bounds.map_or(0.0, |b| (b.high - b.low).max_element());
     if !mapper.reaches_any(MIN_TRAVEL * size)? {
         return Ok(None);
     }
     mapper.sample_pending()?;
     for round in 0..ROUNDS {
-        if let Some(k) = mapper.rooms.iter().position(PartRoom::is_free) {
+        if let Some(k) = mapper.rooms.iter().position(PartTravel::is_free) {
             return Ok(Some(mapper.sphere.directions[k]));
         }
-        let farthest = mapper.rooms.iter().map(PartRoom::distance).fold(0.0, f64::max);
+        let farthest = mapper.rooms.iter().map(PartTravel::safe_distance).fold(0.0, f64::max);
         let cuts = mapper.triangles_to_cut();
         if farthest < (MIN_TRAVEL + MIN_TRAVEL_STEP * round as f64) * size {
             return Ok(None);
@@ -76,12 +77,12 @@ pub(crate) fn way_out(
         }
         mapper.cut_triangles(cuts)?;
     }
-    let free = mapper.rooms.iter().position(PartRoom::is_free);
+    let free = mapper.rooms.iter().position(PartTravel::is_free);
     Ok(free.map(|k| mapper.sphere.directions[k]))
 }
 
-/// Returns the free direction farthest from the borders of its region. The inner `None` means that there is none, the
-/// outer one that the exact computation does not decide it.
+/// Returns the free direction farthest from the borders of its region. The inner `None` means that there is no free
+/// region, the outer one that the exact computation does not decide it or is not possible.
 #[expect(
     clippy::option_option,
     reason = "the outer option is whether it is decided, the inner one the direction"
@@ -95,10 +96,10 @@ fn exact_way_out(
 ) -> Result<Option<Option<DVec3>>, AssemblyError> {
     let others: Vec<usize> =
         (0..bodies.len()).filter(|k| others[*k] && !group.contains(k)).collect();
-    let Ok(removal) = Removal::between(bodies, group, &others) else { return Ok(None) };
+    let Ok(removal) = RemovalPair::between(bodies, group, &others) else { return Ok(None) };
     let never = AtomicBool::new(false);
     let free_options = FreeOptions::DEFAULT.with_looks(MAX_LOOKS).with_start_overlap(options.start);
-    let free = match removal.directions(free_options, watch.flag().unwrap_or(&never)) {
+    let free = match removal.free_directions(free_options, watch.cancel_flag().unwrap_or(&never)) {
         Err(AssemblyError::Cancelled) => return Err(AssemblyError::Cancelled),
         Err(_) => return Ok(None),
         Ok(free) => free,
@@ -114,7 +115,9 @@ impl Mapper<'_> {
     /// Checks whether the group travels at least `far` along any of the samples.
     fn reaches_any(&self, far: f64) -> Result<bool, AssemblyError> {
         let examine = |(workspace, witnesses): &mut (Workspace, Witnesses), d: &DVec3| {
-            self.watch.check().map(|()| !self.is_stopped_within(*d, far, workspace, witnesses))
+            self.watch
+                .check_cancelled()
+                .map(|()| !self.is_stopped_within(*d, far, workspace, witnesses))
         };
         let reached = self.sphere.directions.par_iter().map_init(Default::default, examine);
         // The search ends with a direction that reaches `far` or with a cancelled run.
@@ -132,7 +135,7 @@ impl Mapper<'_> {
         let start = self.options.start;
         let mut pairs = Vec::new();
         for &part in self.group {
-            let ahead = self.bodies.ahead(part, d).into_iter().take_while(|x| x.0 < far);
+            let ahead = self.bodies.parts_ahead(part, d).into_iter().take_while(|x| x.0 < far);
             let ahead = ahead.filter(|&(_, by)| self.others[by] && !self.group.contains(&by));
             pairs.extend(ahead.map(|(_, by)| [part, by]));
         }
@@ -142,11 +145,11 @@ impl Mapper<'_> {
             return true;
         }
         pairs.into_iter().any(|pair| {
-            let room = self.bodies.room(pair, d, Some(far), start, workspace);
-            if let Room::Blocked(stop) = &room {
+            let room = self.bodies.free_travel(pair, d, Some(far), start, workspace);
+            if let FreeTravel::Blocked(stop) = &room {
                 witnesses.store(pair, stop);
             }
-            room != Room::Free
+            room != FreeTravel::Free
         })
     }
 
@@ -154,15 +157,15 @@ impl Mapper<'_> {
     fn triangles_to_cut(&self) -> Vec<usize> {
         let score = |t: usize| {
             let rooms = self.sphere.triangles[t].corners.map(|k| &self.rooms[k as usize]);
-            let distances = rooms.map(PartRoom::distance);
+            let distances = rooms.map(PartTravel::safe_distance);
             let far = distances.into_iter().fold(0.0, f64::max);
             let near = distances.into_iter().fold(f64::INFINITY, f64::min);
-            let same = rooms.iter().all(|r| r.by() == rooms[0].by());
-            let width = self.sphere.widest(t);
+            let same = rooms.iter().all(|r| r.blocker() == rooms[0].blocker());
+            let width = self.sphere.longest_side(t);
             let wanted = width > MIN_WIDTH && far > 0.0 && (!same || far - near > MIN_CHANGE * far);
             wanted.then_some((far * width, t))
         };
-        let mut found: Vec<(f64, usize)> = self.sphere.leaves().filter_map(score).collect();
+        let mut found: Vec<(f64, usize)> = self.sphere.leaf_triangles().filter_map(score).collect();
         found.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
         found.truncate(MAX_CUTS);
         found.into_iter().map(|x| x.1).collect()

@@ -14,10 +14,10 @@ use super::PlanOptions;
 use super::order::Order;
 use super::shadow::max_bounded;
 use super::step::{Leg, Turn, TurnProof};
-use crate::bodies::{Bodies, Turned};
-use crate::boxes::span;
+use crate::bodies::{Bodies, ScrewOutcome};
+use crate::boxes::value_range;
 use crate::error::AssemblyError;
-use crate::threads::is_round;
+use crate::threads::is_rotationally_symmetric;
 use crate::watch::Watch;
 use crate::{cylinders, inertia};
 
@@ -54,7 +54,7 @@ pub(super) fn search_bayonet(
     options: PlanOptions,
     watch: Watch,
 ) -> Result<Option<Bayonet>, AssemblyError> {
-    if options.legs < 2 || left.len() > MAX_PARTS || bodies.fit().tolerance() < 0.0 {
+    if options.max_moves < 2 || left.len() > MAX_PARTS || bodies.fit().tolerance() < 0.0 {
         return Ok(None);
     }
     let work = Cell::new(0);
@@ -65,9 +65,9 @@ pub(super) fn search_bayonet(
             continue;
         }
         for [point, axis] in candidate_axes(bodies, part) {
-            watch.check()?;
+            watch.check_cancelled()?;
             let solid = bodies.assembly().parts()[part].solid();
-            if is_round(solid, [point, axis], ROUND_TOLERANCE) {
+            if is_rotationally_symmetric(solid, [point, axis], ROUND_TOLERANCE) {
                 continue;
             }
             for d in [axis, DVec3::ZERO - axis] {
@@ -92,8 +92,8 @@ pub(super) fn search_bayonet(
 fn candidate_axes(bodies: &Bodies, part: usize) -> Vec<[DVec3; 2]> {
     let solid = bodies.assembly().parts()[part].solid();
     let mut found: Vec<DVec3> = Vec::new();
-    let cylinders = cylinders::axes(solid).into_iter().map(|(_, axis)| axis);
-    for axis in cylinders.chain(inertia::axes(solid)) {
+    let cylinders = cylinders::cylinder_axes(solid).into_iter().map(|(_, axis)| axis);
+    for axis in cylinders.chain(inertia::principal_axes(solid)) {
         if found.len() < MAX_AXES && !found.iter().any(|a| a.cross(axis).length() < 1e-6) {
             found.push(axis);
         }
@@ -102,7 +102,7 @@ fn candidate_axes(bodies: &Bodies, part: usize) -> Vec<[DVec3; 2]> {
         let (u, v) = axis.any_orthonormal_pair();
         let extent = |d: DVec3| {
             let along = solid.vertices().iter().map(|p| p.dot(d));
-            let [low, high] = span(along);
+            let [low, high] = value_range(along);
             d * low.midpoint(high)
         };
         [extent(u) + extent(v), axis]
@@ -126,13 +126,13 @@ impl TurningPart<'_> {
     }
 
     fn is_ignored(&self, other: usize) -> bool {
-        self.bodies.lets_pass(self.part, other, self.options.start)
+        self.bodies.disregards_contacts(self.part, other, self.options.start)
     }
 
     /// Returns a leg with a number of turns about an axis, without a proof.
     fn turn_leg(&self, [point, axis]: [DVec3; 2], turns: f64) -> Leg {
         let (aside, proof) = (DVec3::ZERO, Err(String::new()));
-        let turn = Turn { point, turns, phase: 0.0, aside, proof };
+        let turn = Turn { point, turns, initial_turns: 0.0, offset: aside, proof };
         Leg { parts: vec![self.part], direction: axis, travel: 0.0, turn: Some(turn) }
     }
 
@@ -175,12 +175,12 @@ impl TurningPart<'_> {
     /// fails or the part overlaps another one at the start.
     fn turns_to_stop(&self, about: [DVec3; 2], sense: f64) -> Option<f64> {
         let mut stop = 1.0_f64;
-        let motion = self.turn_leg(about, sense).motion().ok()?;
+        let motion = self.turn_leg(about, sense).to_motion().ok()?;
         for &other in self.others {
             if self.is_ignored(other) || !self.bodies.may_meet_turning([self.part, other], about) {
                 continue;
             }
-            let (share, looks) = self.bodies.stopped([self.part, other], &motion)?;
+            let (share, looks) = self.bodies.contact_share([self.part, other], &motion)?;
             self.add_work(looks);
             stop = stop.min(share);
             if stop < MIN_TURNS {
@@ -192,13 +192,13 @@ impl TurningPart<'_> {
 
     /// Checks whether the part is free along the axis after a number of turns.
     fn leaves_after(&self, about: [DVec3; 2], turns: f64) -> bool {
-        let Ok(motion) = self.turn_leg(about, turns).motion() else { return false };
+        let Ok(motion) = self.turn_leg(about, turns).to_motion() else { return false };
         let free = |&other: &usize| {
             let pair = [self.part, other];
             self.add_work(CAST_WORK);
             self.is_ignored(other)
                 || !self.bodies.may_meet_turning(pair, about)
-                || self.bodies.goes_on(pair, (&motion, about[1])).unwrap_or(false)
+                || self.bodies.is_free_beyond(pair, (&motion, about[1])).unwrap_or(false)
         };
         self.others.iter().all(free)
     }
@@ -206,7 +206,7 @@ impl TurningPart<'_> {
     /// Proves the turn and the move along the axis. Returns `None` if a pair is not proven free.
     fn prove_removal(&self, about: [DVec3; 2], turns: f64) -> Option<Bayonet> {
         let mut leg = self.turn_leg(about, turns);
-        let motion = leg.motion().ok()?;
+        let motion = leg.to_motion().ok()?;
         let (direction, mut pairs) = (about[1], 0);
         let mut travel = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
         for &other in self.others {
@@ -214,12 +214,13 @@ impl TurningPart<'_> {
             if self.is_ignored(other) || !self.bodies.may_meet_turning(pair, about) {
                 continue;
             }
-            match self.bodies.turned(pair, (&motion, direction), None) {
-                Ok(Turned::Free(looks)) => pairs += looks,
+            match self.bodies.screw_outcome(pair, (&motion, direction), None) {
+                Ok(ScrewOutcome::Free(looks)) => pairs += looks,
                 _ => return None,
             }
-            let moved = |p: DVec3| leg.moved(p, 1.0);
-            let past = self.bodies.past_moved((self.part, moved), other, direction, ROUNDINGS);
+            let moved = |p: DVec3| leg.move_point(p, 1.0);
+            let past =
+                self.bodies.travel_beyond_moved((self.part, moved), other, direction, ROUNDINGS);
             travel = max_bounded(travel, past);
         }
         let tolerance = self.bodies.fit().tolerance();

@@ -6,51 +6,51 @@
 
 use glam::DVec3;
 
-use super::{Moves, Stuck};
-use crate::blocking::Blocking;
+use super::{Interlocked, PathSearch};
+use crate::blocking::BlockingGraph;
 use crate::bodies::{Bodies, Fit};
-use crate::digits::short;
-use crate::matrix::Matrix;
+use crate::digits::short_number;
+use crate::matrix::ContactMatrix;
 
 /// Maximum number of smallest blocking sets that are listed for a part.
 const MAX_SETS: usize = 4;
-/// Number of names in a sentence before the rest is counted; one more is named if it is the last.
+/// Number of names in a sentence before the number of the others is given. If there is only one other, it is named too.
 const MAX_NAMES: usize = 3;
 
 /// The smallest sets of parts that block a part.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Hold {
+pub struct BlockingSets {
     /// Index of the part.
     pub part: usize,
     /// The smallest sets of other parts without which the part is free along a tested direction, each with such a
     /// direction. At most 4 sets are listed.
-    pub by: Vec<(Vec<usize>, DVec3)>,
+    pub sets: Vec<(Vec<usize>, DVec3)>,
 }
 
 /// Builds the description of an interlocked group. The blocking sets are taken over the directions of the matrix.
 pub(super) fn explain_stuck(
     bodies: &Bodies,
     left: &[usize],
-    matrix: &Matrix,
+    matrix: &ContactMatrix,
     fixed: bool,
-    (directions, proven, moves): (usize, Option<usize>, Moves),
-) -> Stuck {
-    let among = bodies.mask(left);
-    let mut holds: Vec<Hold> = Vec::new();
-    for &part in left.iter().filter(|&&k| !bodies.assembly().parts()[k].fixed()) {
-        holds.push(Hold { part, by: Vec::new() });
+    (directions, proven, moves): (usize, Option<usize>, PathSearch),
+) -> Interlocked {
+    let among = bodies.part_mask(left);
+    let mut holds: Vec<BlockingSets> = Vec::new();
+    for &part in left.iter().filter(|&&k| !bodies.assembly().parts()[k].is_fixed()) {
+        holds.push(BlockingSets { part, sets: Vec::new() });
     }
     let mut overlapping = Vec::new();
     let constraints = bodies.assembly().constraints();
     let order = constraints.order_arcs(&among);
     for (k, &d) in matrix.directions().iter().enumerate() {
-        let graph = Blocking::with_order(matrix, k, &order, &among);
+        let graph = BlockingGraph::with_order(matrix, k, &order, &among);
         for hold in &mut holds {
             if constraints.allows_direction(&[hold.part], d) {
-                keep_smallest_sets(&mut hold.by, graph.blockers(hold.part), d);
+                keep_smallest_sets(&mut hold.sets, graph.direct_blockers(hold.part), d);
             }
         }
-        let met = matrix.meetings(k).iter().filter(|m| m.stop.is_none());
+        let met = matrix.contacts_along(k).iter().filter(|m| m.stop.is_none());
         overlapping.extend(
             met.filter(|m| m.moving < m.fixed && among[m.moving] && among[m.fixed])
                 .map(|m| [m.moving, m.fixed]),
@@ -59,15 +59,15 @@ pub(super) fn explain_stuck(
     overlapping.sort_unstable();
     overlapping.dedup();
     let constrained = constraints.is_concerned(left);
-    Stuck {
+    Interlocked {
         parts: left.to_vec(),
-        directions,
-        proven,
-        moves,
-        holds,
-        overlapping,
-        fixed,
-        constrained,
+        tested_directions: directions,
+        proof_cells: proven,
+        path_search: moves,
+        blocking_sets: holds,
+        overlapping_pairs: overlapping,
+        has_fixed_parts: fixed,
+        is_constrained: constrained,
     }
 }
 
@@ -91,9 +91,9 @@ struct Claim {
     evidence: String,
 }
 
-impl Stuck {
+impl Interlocked {
     /// Returns the reason why the parts do not come apart, in one sentence.
-    pub fn reason(&self, bodies: &Bodies) -> String {
+    pub fn reason_sentence(&self, bodies: &Bodies) -> String {
         if let Some(near) = self.overlap_reason(bodies) {
             return near;
         }
@@ -116,7 +116,7 @@ impl Stuck {
     /// Returns the established facts. They cover only translations of a group as one body: parts that move at the
     /// same time in different directions may come apart although no group leaves.
     fn established_claim(&self, bodies: &Bodies) -> Claim {
-        let along = match (self.proven, self.directions) {
+        let along = match (self.proof_cells, self.tested_directions) {
             (Some(_), _) => "in any direction".into(),
             (None, 1) => "along the direction asked".into(),
             (None, count) => format!("along the {count} directions asked"),
@@ -131,12 +131,15 @@ impl Stuck {
                 self.parts.len()
             ),
         };
-        let condition =
-            if self.constrained { ", under the constraints on order and directions" } else { "" };
+        let condition = if self.is_constrained {
+            ", under the constraints on order and directions"
+        } else {
+            ""
+        };
         let sentence = format!("{nothing}{condition}");
-        let (heading, evidence) = match self.proven {
+        let (heading, evidence) = match self.proof_cells {
             Some(cells) => (
-                if self.overlapping.is_empty() {
+                if self.overlapping_pairs.is_empty() {
                     "stuck: no group leaves along any direction, proven"
                 } else {
                     "stuck: no group leaves along any direction, proven with what overlaps as one"
@@ -154,10 +157,10 @@ impl Stuck {
     /// Returns a sentence about the parts that overlap with this fit or violate the minimum gap. Returns `None` if
     /// there are none.
     fn overlap_reason(&self, bodies: &Bodies) -> Option<String> {
-        let [first, rest @ ..] = &self.overlapping[..] else { return None };
-        let names = bodies.assembly().names(first).join(" and ");
+        let [first, rest @ ..] = &self.overlapping_pairs[..] else { return None };
+        let names = bodies.assembly().part_names(first).join(" and ");
         let (one, several) = match bodies.fit() {
-            Fit::Apart(_) => ("is", "are"),
+            Fit::MinGap(_) => ("is", "are"),
             _ => ("does", "do"),
         };
         let more = match rest.len() {
@@ -166,12 +169,12 @@ impl Stuck {
             more => format!(", and so {several} {more} more pairs"),
         };
         Some(match bodies.fit() {
-            Fit::Apart(length) => format!(
+            Fit::MinGap(length) => format!(
                 "Where they stand, {names} are nearer to each other than the {} to keep{more}, and such parts are not \
                  moved apart.",
-                short(length)
+                short_number(length)
             ),
-            _ if bodies.overlap_as_given(first[0], first[1]).is_none() => format!(
+            _ if bodies.least_tolerance(first[0], first[1]).is_none() => format!(
                 "Shrunk by half of the tolerance each, {names} run into each other{more}, which they do not as they \
                  are drawn: a smaller tolerance may part them."
             ),
@@ -182,13 +185,13 @@ impl Stuck {
     }
 
     /// Returns the [reason](Self::reason) and the [details](Self::details).
-    pub fn because(&self, bodies: &Bodies) -> String {
-        format!("{} {}", self.reason(bodies), self.details(bodies))
+    pub fn explain(&self, bodies: &Bodies) -> String {
+        format!("{} {}", self.reason_sentence(bodies), self.evidence_sentences(bodies))
     }
 
     /// Returns sentences with the evidence, its limits, and possible remedies.
-    pub fn details(&self, bodies: &Bodies) -> String {
-        let overlaps = !self.overlapping.is_empty();
+    pub fn evidence_sentences(&self, bodies: &Bodies) -> String {
+        let overlaps = !self.overlapping_pairs.is_empty();
         let Claim { sentence, evidence, .. } = self.established_claim(bodies);
         let mut sentences = Vec::new();
         if overlaps {
@@ -196,18 +199,18 @@ impl Stuck {
             sentences.push(format!("{sentence}."));
         }
         sentences.push(evidence);
-        sentences.push(self.moves.describe());
+        sentences.push(self.path_search.describe());
         if self.parts.len() > 2 {
             sentences
                 .push("Motions of several parts at once, each its own way, were not tried.".into());
         }
-        if self.constrained {
+        if self.is_constrained {
             sentences.push("Constraints on their order and directions apply.".into());
         }
         // If they are few, the reason already names them all.
         let held = self.least_held_part().filter(|(_, by)| overlaps || by.len() > MAX_NAMES + 1);
         if let Some((part, by)) = held {
-            let names = bodies.assembly().names(by).join(", ");
+            let names = bodies.assembly().part_names(by).join(", ");
             let part = bodies.assembly().parts()[part].name();
             sentences.push(format!(
                 "The least that holds a part along the directions asked: {part} is held by {names}."
@@ -228,7 +231,7 @@ impl Stuck {
             ),
         };
         let near = match bodies.fit() {
-            Fit::Apart(_) => "are too near to each other",
+            Fit::MinGap(_) => "are too near to each other",
             _ => "overlap",
         };
         format!("Parts that {near} move as one, unless a role or a tolerance lets them pass{open}.")
@@ -236,14 +239,17 @@ impl Stuck {
 
     /// Returns the part with the smallest blocking set, and this set. Returns `None` if no part is blocked.
     fn least_held_part(&self) -> Option<(usize, &[usize])> {
-        let held = self.holds.iter().filter_map(|hold| Some((hold.part, &hold.by.first()?.0[..])));
+        let held = self
+            .blocking_sets
+            .iter()
+            .filter_map(|hold| Some((hold.part, &hold.sets.first()?.0[..])));
         held.filter(|(_, by)| !by.is_empty()).min_by_key(|(_, by)| by.len())
     }
 }
 
 /// Joins the names of parts for a sentence. Of many parts only the first are named.
 fn join_names(bodies: &Bodies, parts: &[usize]) -> String {
-    let names = bodies.assembly().names(parts);
+    let names = bodies.assembly().part_names(parts);
     match &names[..] {
         [first @ .., last] if (1..=MAX_NAMES).contains(&first.len()) => {
             format!("{} and {last}", first.join(", "))
@@ -256,14 +262,14 @@ fn join_names(bodies: &Bodies, parts: &[usize]) -> String {
     }
 }
 
-impl Moves {
+impl PathSearch {
     /// Returns a sentence about the search for removal paths of several moves.
     fn describe(&self) -> String {
         match self {
-            Self::NotAsked(why) => {
+            Self::NotSearched(why) => {
                 format!("Several moves, one after another, were not looked for: {why}.")
             }
-            Self::NotKept => {
+            Self::ConstraintsViolated => {
                 "The paths of several moves that were found violate constraints on order and directions."
                     .into()
             }

@@ -16,7 +16,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::GroupRemoval;
-use crate::blocking::Blocking;
+use crate::blocking::BlockingGraph;
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
 use crate::matrix::direction_bits;
@@ -59,7 +59,7 @@ pub(super) fn smallest_group(
     let (order, is_ordered) = (constraints.order_arcs(alive), constraints.is_ordered(alive));
     let opposite = |k: usize| directions.iter().position(|d| *d == -directions[k]);
     let search_direction = |memory: &mut Memory, k: usize| {
-        watch.check()?;
+        watch.check_cancelled()?;
         if opposite(k).is_some_and(|o| o < k) {
             return Ok(Vec::new());
         }
@@ -131,15 +131,15 @@ fn removable_group(
 ) -> SearchOutcome {
     let count = alive.iter().filter(|a| **a).count();
     let ahead = |part: usize| -> Vec<usize> {
-        let all = queries.bodies.ahead(part, queries.d).into_iter().map(|x| x.1);
+        let all = queries.bodies.parts_ahead(part, queries.d).into_iter().map(|x| x.1);
         all.filter(|&k| alive[k]).collect()
     };
     let mut untested: Vec<Vec<usize>> =
         (0..alive.len()).map(|k| if alive[k] { ahead(k) } else { Vec::new() }).collect();
     let mut arcs = order.to_vec();
     loop {
-        let graph = Blocking::from_arcs(arcs.iter().copied(), alive);
-        let mut groups = graph.removable();
+        let graph = BlockingGraph::from_arcs(arcs.iter().copied(), alive);
+        let mut groups = graph.removable_groups();
         groups.retain(|g| g.len() < count);
         if groups.is_empty() {
             return SearchOutcome::OneComponent;

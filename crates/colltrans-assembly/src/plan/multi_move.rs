@@ -9,16 +9,18 @@
 //! The search moves any group against the others. If that group contains the base, the plan moves the *complement*,
 //! all other parts, in the opposite direction. The relative motions are equal, so the proofs hold.
 
-use colltrans::ways::{self, Searched, WayOptions, WayOut, WaysOut, of_large_facets};
-use colltrans::{Placed, Pose, Solid, free::FreeError, solid::StartOverlap};
+use colltrans::removal::path::{
+    self, RemovalOptions, RemovalPath, RemovalSearch, SearchWork, large_facet_axes,
+};
+use colltrans::{Placed, Pose, Solid, removal::directions::FreeError, solid::StartOverlap};
 use glam::DVec3;
 
 use super::{Leg, PlanOptions};
-use crate::blocking::Blocking;
+use crate::blocking::BlockingGraph;
 use crate::bodies::Bodies;
 use crate::constraints::Constraints;
 use crate::error::AssemblyError;
-use crate::matrix::Matrix;
+use crate::matrix::ContactMatrix;
 use crate::watch::Watch;
 
 /// Maximum number of axes that are tried.
@@ -37,9 +39,9 @@ const PARALLEL: f64 = 1e-6;
 /// Outcome of the search for removal paths of several moves.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub enum Moves {
+pub enum PathSearch {
     /// No search, with the reason.
-    NotAsked(&'static str),
+    NotSearched(&'static str),
     /// For two parts: it is proven that no sequence of translations separates them.
     Proven {
         /// Number of cells of displacements in the proof.
@@ -50,14 +52,14 @@ pub enum Moves {
         /// Maximum number of moves, including the last one.
         legs: usize,
         /// Extent of the search.
-        searched: Searched,
+        searched: SearchWork,
     },
     /// The paths that were found violate the order or direction constraints.
-    NotKept,
+    ConstraintsViolated,
 }
 
 /// A removal path: the legs before the last one, and the direction of the last one.
-pub(super) struct RemovalPath {
+pub(super) struct MovePath {
     /// The legs before the last one.
     pub(super) legs: Vec<Leg>,
     /// The displacement of each of these legs.
@@ -75,51 +77,52 @@ pub(super) struct RemovalPath {
 /// unless proofs are disabled. Parts for which `is_stationary` holds do not move, except against each other.
 pub(super) fn search_path(
     bodies: &Bodies,
-    (left, matrix): (&[usize], &Matrix),
+    (left, matrix): (&[usize], &ContactMatrix),
     is_stationary: impl Fn(usize) -> bool,
     options: PlanOptions,
     watch: Watch,
-) -> Result<Result<RemovalPath, Moves>, AssemblyError> {
+) -> Result<Result<MovePath, PathSearch>, AssemblyError> {
     if let Some(why) = unsupported_reason(bodies, left, options) {
-        return Ok(Err(Moves::NotAsked(why)));
+        return Ok(Err(PathSearch::NotSearched(why)));
     }
-    let legs = options.legs;
+    let legs = options.max_moves;
     if !can_any_group_move(bodies, left, matrix) {
         let why =
             "no group can travel 2 % of the size of the largest part along the tested directions";
-        return Ok(Err(Moves::NotAsked(why)));
+        return Ok(Err(PathSearch::NotSearched(why)));
     }
     let parts = bodies.assembly().parts();
     let placed: Vec<_> = left.iter().map(|&k| parts[k].solid().at(Pose::IDENTITY)).collect();
-    let mut fixed: Vec<usize> = (0..left.len()).filter(|&k| parts[left[k]].fixed()).collect();
-    let cells = if options.prove { WayOptions::default().cells } else { 0 };
-    let options = WayOptions::default()
+    let mut fixed: Vec<usize> = (0..left.len()).filter(|&k| parts[left[k]].is_fixed()).collect();
+    let cells = if options.prove { RemovalOptions::default().cells } else { 0 };
+    let options = RemovalOptions::default()
         .with_cells(cells)
-        .with_tolerance(bodies.least_tolerance(left))
+        .with_tolerance(bodies.least_fit_tolerance(left))
         .with_legs(legs)
         .with_casts(CASTS * legs)
-        .with_looks(options.looks / SHARE * legs as u64)
+        .with_looks(options.max_work / SHARE * legs as u64)
         .with_directions(search_directions(&placed, matrix));
     let constraints = bodies.assembly().constraints();
     for tries in 0.. {
-        let way = match WaysOut::among(&placed, &fixed, &options, watch.flag()) {
-            Ok(WaysOut::Found(way)) => way,
-            Ok(WaysOut::Proven(proof)) => {
+        let way = match RemovalSearch::search_among(&placed, &fixed, &options, watch.cancel_flag())
+        {
+            Ok(RemovalSearch::Found(way)) => way,
+            Ok(RemovalSearch::Proven(proof)) => {
                 let [a, b] = [&placed[0], &placed[1]];
                 proof.verify(a, b).map_err(to_assembly_error)?;
-                return Ok(Err(Moves::Proven { cells: proof.cells() }));
+                return Ok(Err(PathSearch::Proven { cells: proof.cell_count() }));
             }
-            Ok(WaysOut::NotFound { searched }) => {
-                return Ok(Err(Moves::NotFound { legs, searched }));
+            Ok(RemovalSearch::NotFound { searched }) => {
+                return Ok(Err(PathSearch::NotFound { legs, searched }));
             }
             Err(FreeError::Overlapping { .. }) => {
                 let why = "they overlap with 0.8 of the tolerance, which the search uses";
-                return Ok(Err(Moves::NotAsked(why)));
+                return Ok(Err(PathSearch::NotSearched(why)));
             }
             Err(error) => return Err(to_assembly_error(error)),
         };
         let found = removal_path(bodies.len(), left, &is_stationary, &way);
-        let violating = found.violating_parts(constraints, &bodies.mask(left));
+        let violating = found.violating_parts(constraints, &bodies.part_mask(left));
         if violating.is_empty() {
             way.verify(&placed).map_err(to_assembly_error)?;
             return Ok(Ok(found));
@@ -131,10 +134,10 @@ pub(super) fn search_path(
             break;
         }
     }
-    Ok(Err(Moves::NotKept))
+    Ok(Err(PathSearch::ConstraintsViolated))
 }
 
-impl RemovalPath {
+impl MovePath {
     /// Returns the parts that violate the constraints, in increasing order.
     ///
     /// These are parts that leave too early, parts of a unit that moves incompletely, and parts that move along a
@@ -179,9 +182,9 @@ fn unsupported_reason(
 ) -> Option<&'static str> {
     let assembly = bodies.assembly();
     let pairs = || left.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
-    let ignored = |[a, b]: [usize; 2]| assembly.ignored(a, b).is_some();
+    let ignored = |[a, b]: [usize; 2]| assembly.ignored_contacts(a, b).is_some();
     let lets_pass = options.start == StartOverlap::Ignore;
-    if options.legs < 2 {
+    if options.max_moves < 2 {
         Some("the maximum number of moves is 1")
     } else if bodies.fit().tolerance() < 0.0 {
         Some("the fit has a minimum gap")
@@ -189,7 +192,7 @@ fn unsupported_reason(
         Some("there are more than 24 parts")
     } else if left.iter().any(|&k| assembly.parts()[k].is_surface()) {
         Some("some parts are open surfaces")
-    } else if pairs().any(|p| bodies.tolerated(p).is_some()) {
+    } else if pairs().any(|p| bodies.tolerated_contacts(p).is_some()) {
         Some("some pairs have a fit of their own")
     } else if pairs().any(|p| ignored(p) || lets_pass && bodies.overlaps(p[0], p[1])) {
         Some("some overlaps are ignored")
@@ -199,8 +202,8 @@ fn unsupported_reason(
 }
 
 /// Returns the axes normal to large facets, and then directions of the matrix that are not parallel to them.
-fn search_directions(placed: &[Placed<'_, Solid>], matrix: &Matrix) -> Vec<DVec3> {
-    let mut axes = of_large_facets(placed);
+fn search_directions(placed: &[Placed<'_, Solid>], matrix: &ContactMatrix) -> Vec<DVec3> {
+    let mut axes = large_facet_axes(placed);
     for &d in matrix.directions() {
         if axes.len() < MAX_AXES && !axes.iter().any(|a| a.cross(d).length() < PARALLEL) {
             axes.push(d);
@@ -210,22 +213,22 @@ fn search_directions(placed: &[Placed<'_, Solid>], matrix: &Matrix) -> Vec<DVec3
 }
 
 /// Checks whether some group can travel one search step along a direction of the matrix. If not, no cast is needed.
-fn can_any_group_move(bodies: &Bodies, left: &[usize], matrix: &Matrix) -> bool {
-    let among = bodies.mask(left);
-    let size = |&k: &usize| bodies.bounds(k).size().max_element();
-    let step = WayOptions::default().step * left.iter().map(size).fold(0.0, f64::max);
-    let fixed = |k: &usize| bodies.assembly().parts()[*k].fixed();
+fn can_any_group_move(bodies: &Bodies, left: &[usize], matrix: &ContactMatrix) -> bool {
+    let among = bodies.part_mask(left);
+    let size = |&k: &usize| bodies.bounds(k).side_lengths().max_element();
+    let step = RemovalOptions::default().step * left.iter().map(size).fold(0.0, f64::max);
+    let fixed = |k: &usize| bodies.assembly().parts()[*k].is_fixed();
     (0..matrix.directions().len()).any(|k| {
-        let met = matrix.meetings(k).iter().filter(|m| m.displaced_distance() < step);
-        let graph = Blocking::from_arcs(met.map(|m| (m.moving, m.fixed)), &among);
-        graph.removable().iter().any(|g| g.len() < left.len() && !g.iter().any(fixed))
+        let met = matrix.contacts_along(k).iter().filter(|m| m.displaced_distance() < step);
+        let graph = BlockingGraph::from_arcs(met.map(|m| (m.moving, m.fixed)), &among);
+        graph.removable_groups().iter().any(|g| g.len() < left.len() && !g.iter().any(fixed))
     })
 }
 
 /// Returns the parts that a leg moves, and the sign of their motion. These are the parts of the leg, or all others in
 /// the opposite direction if only the leg's group contains stationary parts.
 fn moved_parts(
-    leg: &ways::Leg,
+    leg: &path::Leg,
     left: &[usize],
     is_stationary: &impl Fn(usize) -> bool,
 ) -> (Vec<usize>, f64) {
@@ -240,8 +243,8 @@ fn removal_path(
     count: usize,
     left: &[usize],
     is_stationary: &impl Fn(usize) -> bool,
-    way: &WayOut,
-) -> RemovalPath {
+    way: &RemovalPath,
+) -> MovePath {
     let turned = |v: DVec3, sign: f64| if sign < 0.0 { DVec3::ZERO - v } else { v };
     let (last, before) = way.legs.split_last().expect("a path has at least one leg");
     let (mut at, mut legs, mut return_legs) = (vec![DVec3::ZERO; count], Vec::new(), Vec::new());
@@ -266,5 +269,5 @@ fn removal_path(
             return_legs.push(Leg::straight(parts, direction, leg.travel));
         }
     }
-    RemovalPath { legs, motions, return_legs, parts: gone, direction: turned(last.direction, sign) }
+    MovePath { legs, motions, return_legs, parts: gone, direction: turned(last.direction, sign) }
 }

@@ -12,12 +12,12 @@ pub struct PlanOptions {
     /// Minimum number of sampled directions for parts that no other direction moves; 0 disables sampling.
     pub samples: usize,
     /// Maximum number of moves of a removal path; 1 disables the search for paths.
-    pub legs: usize,
+    pub max_moves: usize,
     /// Whether to try to prove that no translation separates an interlocked group.
     pub prove: bool,
     /// Work limit of each search for removal paths. For each of the `legs`, a fortieth of this number of node pairs
-    /// may be visited, as of [`WayOptions`](colltrans::ways::WayOptions), and 500 casts may be made.
-    pub looks: u64,
+    /// may be visited, as of [`RemovalOptions`](colltrans::removal::path::WayOptions), and 500 casts may be made.
+    pub max_work: u64,
     /// Direction opposite to gravity, of any nonzero length. `None` selects that of the
     /// [assembly](crate::Assembly::up).
     pub up: Option<DVec3>,
@@ -28,9 +28,9 @@ impl Default for PlanOptions {
         Self {
             start: StartOverlap::Refuse,
             samples: 162,
-            legs: 2,
+            max_moves: 2,
             prove: true,
-            looks: 20_000_000,
+            max_work: 20_000_000,
             up: None,
         }
     }
@@ -51,8 +51,8 @@ impl PlanOptions {
 
     /// Returns the options with another maximum number of [`legs`](Self::legs).
     #[must_use]
-    pub fn with_legs(self, legs: usize) -> Self {
-        Self { legs, ..self }
+    pub fn with_max_moves(self, legs: usize) -> Self {
+        Self { max_moves: legs, ..self }
     }
 
     /// Returns the options with [proofs](Self::prove) enabled or disabled.
@@ -64,7 +64,7 @@ impl PlanOptions {
     /// Returns the options with another [work limit](Self::looks).
     #[must_use]
     pub fn with_looks(self, looks: u64) -> Self {
-        Self { looks, ..self }
+        Self { max_work: looks, ..self }
     }
 
     /// Returns the options with another [`up`](Self::up) direction.

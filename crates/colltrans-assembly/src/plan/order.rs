@@ -3,7 +3,7 @@
 //! - `up` is opposite to gravity. A part *rests on* the parts that block it at once along `-up`.
 //! - A part *falls* if nothing that remains carries it. The lowest parts, the *base* and fixed parts never fall.
 //! - The *travel* of a group along `d` is the distance after which it is beyond all remaining parts whose boxes
-//!   overlap its shadow ([`Bodies::past`]).
+//!   overlap its shadow ([`Bodies::travel_beyond`]).
 //!
 //! A direction is considered if its travel is at most [`TRAVEL_SLACK`] times the shortest one. The choice of least
 //! [cost](Order::step_cost) wins; ties go to the first part. Before a choice is accepted, samples of the sphere are
@@ -21,10 +21,10 @@ use super::shadow::Shadow;
 use super::single::SingleParts;
 use super::stability::{Stability, Support};
 use crate::bodies::Bodies;
-use crate::boxes::Living;
+use crate::boxes::RemainingBoxes;
 use crate::constraints::Constraints;
-use crate::liaisons::reach;
-use crate::matrix::{Matrix, direction_bits};
+use crate::liaisons::contact_reach;
+use crate::matrix::{ContactMatrix, direction_bits};
 use crate::sphere::Sphere;
 use crate::witness::Memory;
 
@@ -46,7 +46,7 @@ const FALL_COST: f64 = 2.0;
 const TIP_COST: f64 = 1.0;
 /// ... for another shape than in the step before, because it needs another tool, ...
 const SHAPE_CHANGE_COST: f64 = 0.8;
-/// ... in addition, if other parts of the new shape cannot leave yet, because the shape then needs a third turn, ...
+/// ... in addition, if other parts of the new shape cannot leave yet, ...
 const INCOMPLETE_SHAPE_COST: f64 = 0.4;
 /// ... for another direction than in the step before, ...
 const DIRECTION_CHANGE_COST: f64 = 0.3;
@@ -70,7 +70,7 @@ pub(super) struct Order<'a> {
     size: f64,
     /// For each part, the first part with the same shape.
     likes: &'a [usize],
-    living: Living,
+    living: RemainingBoxes,
     /// For each shape (named by its first part), the number of present parts that may move.
     counts: Vec<usize>,
     /// Mask of the parts that do not move: the base, and parts that must not be moved.
@@ -105,7 +105,7 @@ impl<'a> Order<'a> {
     /// except the base, which contains none of the `wanted` parts.
     pub(super) fn new(
         bodies: &'a Bodies,
-        matrix: &Matrix,
+        matrix: &ContactMatrix,
         likes: &'a [usize],
         present: &[bool],
         up: DVec3,
@@ -116,9 +116,9 @@ impl<'a> Order<'a> {
         let base = base_parts(bodies, present, up, moves);
         let shadows = matrix.directions().iter().map(|d| Shadow::new(bodies, present, *d));
         let shadows = shadows.collect();
-        let size = bodies.assembly().bounds().size().max_element().max(f64::MIN_POSITIVE);
+        let size = bodies.assembly().bounds().side_lengths().max_element().max(f64::MIN_POSITIVE);
         let (carried, supports) = find_supports(bodies, matrix, present, &base, up);
-        let living = bodies.living(present);
+        let living = bodies.remaining_parts(present);
         let stationary = if movable.is_some() {
             (0..likes.len()).map(|part| present[part] && !moves(part)).collect()
         } else {
@@ -154,7 +154,7 @@ impl<'a> Order<'a> {
 
     /// Returns the mask of present parts.
     pub(super) fn present(&self) -> &[bool] {
-        self.living.there()
+        self.living.remaining_flags()
     }
 
     /// Returns the arcs of the order constraints among the present parts.
@@ -299,11 +299,12 @@ impl<'a> Order<'a> {
         best.map(|(_, parts, k)| (parts, k))
     }
 
-    /// Returns the considered directions of a group, each with its own cost: the travel, and the parts that fall or
-    /// lose balance. This cost does not depend on the shape and direction of the step before. Shorter directions that
-    /// were found are included.
+    /// Returns the directions of a group whose travel is at most [`TRAVEL_SLACK`] times the shortest one plus the
+    /// noise. The candidates are `ways` and the shorter directions that [`find_shortcut`](Self::find_shortcut) has
+    /// stored. Each direction has its own cost: the travel, and the parts that fall or lose balance. This cost does not
+    /// depend on the shape and direction of the step before.
     fn own_costs(&mut self, parts: &[usize], ways: &[usize]) -> Vec<OwnCost> {
-        self.bodies.count_look();
+        self.bodies.count_visit();
         let more = self.shortcuts.found.get(parts).map_or(&[][..], |found| found);
         let (bodies, shadows, living) = (self.bodies, &mut self.shadows, &self.living);
         let travel = |&k: &usize| (k, shadows[k].travel_of(bodies, parts, living));
@@ -328,7 +329,7 @@ impl<'a> Order<'a> {
     /// [`SHORTCUT_RATIO`] times as long.
     fn shortest_alternative(&mut self, parts: &[usize], k: usize) -> Option<usize> {
         let Self { bodies, living, shadows, shortcuts, .. } = self;
-        let present = living.there();
+        let present = living.remaining_flags();
         let way = shadows[k].travel_of(bodies, parts, living);
         if way <= SHORT_TRAVEL * self.size {
             return None;
@@ -373,7 +374,7 @@ impl<'a> Order<'a> {
             .iter()
             .position(|s| direction_bits(s.direction) == direction_bits(direction));
         known.unwrap_or_else(|| {
-            self.shadows.push(Shadow::new(self.bodies, self.living.there(), direction));
+            self.shadows.push(Shadow::new(self.bodies, self.living.remaining_flags(), direction));
             self.shadows.len() - 1
         })
     }
@@ -406,15 +407,15 @@ impl<'a> Order<'a> {
             parts.iter().flat_map(|&part| self.carried[part].iter().copied()).collect();
         above.sort_unstable();
         above.dedup();
-        above.retain(|part| self.living.has(*part) && !parts.contains(part));
+        above.retain(|part| self.living.contains(*part) && !parts.contains(part));
         let (mut falls, mut tips) = (Vec::new(), Vec::new());
         for part in above {
             let Some(base) = &self.supports[part] else { continue };
-            let carries = |below: usize| self.living.has(below) && !parts.contains(&below);
+            let carries = |below: usize| self.living.contains(below) && !parts.contains(&below);
             match base.stability(carries) {
                 Stability::Falls => falls.push(part),
                 Stability::OffBalance
-                    if base.stability(|below| self.living.has(below)) == Stability::Stands =>
+                    if base.stability(|below| self.living.contains(below)) == Stability::Stands =>
                 {
                     tips.push(part);
                 }
@@ -437,7 +438,7 @@ fn base_parts(
     moves: impl Fn(usize) -> bool,
 ) -> Vec<bool> {
     let parts = bodies.assembly().parts();
-    let mut base: Vec<bool> = parts.iter().zip(present).map(|(p, t)| *t && p.fixed()).collect();
+    let mut base: Vec<bool> = parts.iter().zip(present).map(|(p, t)| *t && p.is_fixed()).collect();
     if base.contains(&true) {
         return base;
     }
@@ -445,7 +446,7 @@ fn base_parts(
     let digits = |x: f64| x as f32;
     let key = |k: usize| {
         let bounds = parts[k].solid().bounds();
-        let size = bounds.size();
+        let size = bounds.side_lengths();
         // Boxes of flat sheets have zero volume.
         let area = size.x * size.y + size.y * size.z + size.z * size.x;
         let height = bounds.center().dot(up);
@@ -468,13 +469,13 @@ fn base_parts(
 /// Returns for each part the parts that rest on it, and what it rests on.
 fn find_supports(
     bodies: &Bodies,
-    matrix: &Matrix,
+    matrix: &ContactMatrix,
     present: &[bool],
     base: &[bool],
     up: DVec3,
 ) -> (Vec<Vec<usize>>, Vec<Option<Support>>) {
     let count = bodies.len();
-    let near = SUPPORT_REACH * reach(bodies);
+    let near = SUPPORT_REACH * contact_reach(bodies);
     let lowest = |k: usize| {
         let heights = bodies.assembly().parts()[k].solid().vertices().iter().map(|p| p.dot(up));
         heights.fold(f64::INFINITY, f64::min)
@@ -486,7 +487,7 @@ fn find_supports(
         (0..count).map(|k| (!held(k)).then(Vec::new)).collect();
     let mut carried = vec![Vec::new(); count];
     let down = matrix.directions().iter().position(|d| d.dot(-up) >= SAME_DIRECTION);
-    let living = bodies.living(present);
+    let living = bodies.remaining_parts(present);
     let found: Vec<Vec<usize>> = below
         .par_iter()
         .enumerate()

@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::{Plan, Times};
+use super::{HandlingTimes, Plan};
 use crate::csv::{Cell, Table};
-use crate::matrix::Matrix;
+use crate::matrix::ContactMatrix;
 use crate::part::Assembly;
 
 /// Maximum number of alternatives that are listed for a part.
@@ -13,11 +13,11 @@ const MAX_WAYS: usize = 16;
 impl Plan {
     /// Returns the steps in rounds. Each step waits for a step of the round before, so the steps of one round are
     /// independent.
-    pub fn rounds(&self) -> Vec<Vec<usize>> {
+    pub fn parallel_rounds(&self) -> Vec<Vec<usize>> {
         let mut round = vec![0; self.steps.len()];
         let mut rounds: Vec<Vec<usize>> = Vec::new();
         for (k, step) in self.steps.iter().enumerate() {
-            round[k] = step.after.iter().map(|&before| round[before] + 1).max().unwrap_or(0);
+            round[k] = step.predecessors.iter().map(|&before| round[before] + 1).max().unwrap_or(0);
             if rounds.len() <= round[k] {
                 rounds.push(Vec::new());
             }
@@ -31,11 +31,11 @@ impl Plan {
     ///
     /// A group is put together before it is inserted. Each move is valid in reverse by the same proof; parts that a
     /// step unscrews are screwed in.
-    pub fn assembly(&self) -> Vec<(usize, Vec<usize>)> {
+    pub fn assembly_sequence(&self) -> Vec<(usize, Vec<usize>)> {
         let last = self.steps.len().saturating_sub(1);
         let mut before = vec![Vec::new(); self.steps.len()];
         for (k, step) in self.steps.iter().enumerate().rev() {
-            for &earlier in &step.after {
+            for &earlier in &step.predecessors {
                 before[earlier].push(last - k);
             }
         }
@@ -44,7 +44,7 @@ impl Plan {
 
     /// Returns the steps as CSV, numbered from 1. The columns are the parts, direction, travel, turns, number of
     /// moves, enclosing step, preceding steps, round, and seconds.
-    pub fn to_csv(&self, assembly: &Assembly, times: &Times) -> String {
+    pub fn to_csv(&self, assembly: &Assembly, times: &HandlingTimes) -> String {
         let heads = [
             "step",
             "parts",
@@ -60,23 +60,24 @@ impl Plan {
             "seconds",
         ];
         let mut table = Table::new(&heads);
-        let seconds = times.of(self);
-        let rounds = self.rounds();
+        let seconds = times.step_seconds(self);
+        let rounds = self.parallel_rounds();
         let numbers = |steps: &[usize]| {
             steps.iter().map(|k| (k + 1).to_string()).collect::<Vec<_>>().join(" ")
         };
         for (k, step) in self.steps.iter().enumerate() {
             let round = rounds.iter().position(|round| round.contains(&k)).unwrap_or(0);
-            let parts = assembly.names(&step.parts).join("; ");
-            let (within, after) = (step.within.map_or(Vec::new(), |w| vec![w]), &step.after);
-            table.row(&[
+            let parts = assembly.part_names(&step.parts).join("; ");
+            let (within, after) =
+                (step.group_step.map_or(Vec::new(), |w| vec![w]), &step.predecessors);
+            table.push_row(&[
                 Cell::Number((k + 1) as f64),
                 Cell::Text(&parts),
                 Cell::Number(step.direction.x),
                 Cell::Number(step.direction.y),
                 Cell::Number(step.direction.z),
                 Cell::Number(step.travel.value),
-                Cell::Number(step.turn().map_or(0.0, |turn| turn.turns)),
+                Cell::Number(step.first_turn().map_or(0.0, |turn| turn.turns)),
                 Cell::Number(step.path.len() as f64),
                 Cell::Text(&numbers(&within)),
                 Cell::Text(&numbers(after)),
@@ -84,7 +85,7 @@ impl Plan {
                 Cell::Number(seconds[k]),
             ]);
         }
-        table.finish()
+        table.into_text()
     }
 }
 
@@ -94,20 +95,21 @@ impl Plan {
 /// Alternatives that contain another one or a fixed part are omitted, and fixed parts have no entry. At most 16
 /// alternatives are listed for a part. Interlocked parts, and the parts of a subassembly, list each other and leave
 /// as a group.
-pub fn and_or(assembly: &Assembly, matrix: &Matrix) -> Value {
+pub fn precedence_graph(assembly: &Assembly, matrix: &ContactMatrix) -> Value {
     let parts = assembly.parts();
     let constraints = assembly.constraints();
     let order = constraints.order_arcs(&vec![true; parts.len()]);
     let mut graph = serde_json::Map::new();
-    for (part, of) in parts.iter().enumerate().filter(|(_, of)| !of.fixed()) {
+    for (part, of) in parts.iter().enumerate().filter(|(_, of)| !of.is_fixed()) {
         let mut ways: Vec<(Vec<usize>, usize)> = Vec::new();
         let before = || order.iter().filter(|arc| arc.0 == part).map(|arc| arc.1);
         for (k, &d) in matrix.directions().iter().enumerate() {
             let mut met: Vec<usize> =
-                matrix.of_part(k, part).iter().map(|m| m.fixed).chain(before()).collect();
+                matrix.contacts_of_part(k, part).iter().map(|m| m.fixed).chain(before()).collect();
             met.sort_unstable();
             met.dedup();
-            if constraints.allows_direction(&[part], d) && !met.iter().any(|&by| parts[by].fixed())
+            if constraints.allows_direction(&[part], d)
+                && !met.iter().any(|&by| parts[by].is_fixed())
             {
                 ways.push((met, k));
             }
@@ -120,7 +122,7 @@ pub fn and_or(assembly: &Assembly, matrix: &Matrix) -> Value {
                 least.push((met, k));
             }
         }
-        let way = |(met, k): &(Vec<usize>, usize)| json!({ "direction": matrix.directions()[*k].to_array(), "and": assembly.names(met) });
+        let way = |(met, k): &(Vec<usize>, usize)| json!({ "direction": matrix.directions()[*k].to_array(), "and": assembly.part_names(met) });
         graph.insert(
             of.name().to_owned(),
             json!({ "or": least.iter().map(way).collect::<Value>() }),

@@ -28,8 +28,9 @@ pub(super) struct ShapeState {
     pub(super) all: bool,
 }
 
-/// Removals along one direction. The key is the bits of the own cost, which sort like the numbers. Each entry is a
-/// part and the index of the removal among those of the part.
+/// Removals along one direction that have the same cost apart from the own cost. The key is the bit pattern of the own
+/// cost, which sorts like the number because the own cost is not negative. Each entry is a part and the index of the
+/// removal in the list of the part.
 #[derive(Default)]
 struct CostClass(BTreeMap<u64, BTreeSet<(usize, usize)>>);
 

@@ -5,7 +5,7 @@ use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 
 use super::GroupRemoval;
-use super::multi_move::RemovalPath;
+use super::multi_move::MovePath;
 use super::order::Order;
 use super::shadow::{ZERO_TRAVEL, max_bounded};
 use crate::bodies::Bodies;
@@ -42,11 +42,11 @@ fn straight_travel(
     let mut workspace = Workspace::default();
     let ahead = bodies.pairs_ahead(&removal.parts, d, order.present());
     let mut all = ahead.iter();
-    if let Some(&pair) = all.find(|pair| bodies.meets(**pair, d, start, &mut workspace)) {
+    if let Some(&pair) = all.find(|pair| bodies.ever_meets(**pair, d, start, &mut workspace)) {
         return Err(replay_error(bodies, pair, d, 0.0));
     }
     for &[a, b] in &ahead {
-        let overlapping = bodies.lets_pass(a, b, start);
+        let overlapping = bodies.disregards_contacts(a, b, start);
         let place = POSITIONS.iter().map(|share| share * travel.value);
         let met = |t: &f64| bodies.overlaps_displaced(a, d * *t, b);
         if let Some(t) = place.filter(|t| *t > 0.0).find(met).filter(|_| !overlapping) {
@@ -59,7 +59,7 @@ fn straight_travel(
 /// Checks a path of several moves by overlap tests at a few positions. Its proofs were checked before.
 fn path_travel(
     bodies: &Bodies,
-    path: &RemovalPath,
+    path: &MovePath,
     others: &[usize],
 ) -> Result<Bounded, AssemblyError> {
     let mut all = [&path.parts[..], others].concat();
@@ -88,7 +88,7 @@ fn path_travel(
     }
     let (d, leaving) = (path.direction, pairs(&path.parts));
     let past = |travel, &[a, b]: &[usize; 2]| {
-        max_bounded(travel, bodies.past_displaced(a, at[a] - at[b], b, d))
+        max_bounded(travel, bodies.travel_beyond_displaced(a, at[a] - at[b], b, d))
     };
     let travel = leaving.iter().fold(ZERO_TRAVEL, past);
     for [a, b] in leaving {

@@ -5,26 +5,26 @@ use std::collections::BTreeMap;
 use super::smallest_set::{SufficientSet, smallest_sufficient_set};
 use super::{Plan, PlanOptions, Planner};
 use crate::bodies::Bodies;
-use crate::candidates::Finer;
+use crate::candidates::FinerCandidate;
 use crate::error::AssemblyError;
-use crate::likes::likes;
-use crate::matrix::Matrix;
+use crate::identical::first_identical_parts;
+use crate::matrix::ContactMatrix;
 use crate::part::Assembly;
 use crate::watch::Watch;
 
 /// The parts that are removed so that selected parts come out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Wanted {
+pub struct SelectedRemoval {
     /// Indices of the selected parts, in increasing order.
     pub parts: Vec<usize>,
     /// Indices of the other removed parts, in increasing order.
     pub others: Vec<usize>,
     /// Whether it is certain that fewer other parts do not suffice. This covers single moves of any groups along the
     /// directions of the matrix, not other directions.
-    pub least: bool,
+    pub is_minimal: bool,
     /// Whether all selected parts come out.
-    pub out: bool,
+    pub is_complete: bool,
 }
 
 /// Computes a plan that removes selected parts.
@@ -37,8 +37,8 @@ pub struct Wanted {
 /// selected part is fixed.
 pub fn remove<'a>(
     bodies: &'a Bodies<'a>,
-    matrix: &Matrix<'a>,
-    finer: &[Finer],
+    matrix: &ContactMatrix<'a>,
+    finer: &[FinerCandidate],
     parts: &[usize],
     options: PlanOptions,
     watch: Watch,
@@ -47,14 +47,14 @@ pub fn remove<'a>(
     parts.sort_unstable();
     parts.dedup();
     if parts.is_empty() || parts.len() >= bodies.len() {
-        return Err(AssemblyError::Removal { count: parts.len(), of: bodies.len() });
+        return Err(AssemblyError::InvalidRemoval { count: parts.len(), of: bodies.len() });
     }
     let all = bodies.assembly().parts();
-    if let Some(&fixed) = parts.iter().find(|&&part| all[part].fixed()) {
-        return Err(AssemblyError::Fixed { name: all[fixed].name().to_owned() });
+    if let Some(&fixed) = parts.iter().find(|&&part| all[part].is_fixed()) {
+        return Err(AssemblyError::FixedAndRemoved { name: all[fixed].name().to_owned() });
     }
-    matrix.complete(watch)?;
-    let likes = likes(bodies.assembly());
+    matrix.compute_all(watch)?;
+    let likes = first_identical_parts(bodies.assembly());
     let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
     planner.wanted = &parts;
     let found = smallest_sufficient_set(bodies, matrix, &parts);
@@ -64,20 +64,23 @@ pub fn remove<'a>(
     if found.is_none() {
         plan.drop_unneeded_steps(&parts, bodies.len());
     }
-    let moved =
-        plan.steps.iter().filter(|step| step.within.is_none()).flat_map(|step| step.parts.clone());
+    let moved = plan
+        .steps
+        .iter()
+        .filter(|step| step.group_step.is_none())
+        .flat_map(|step| step.parts.clone());
     let (gone, mut others): (Vec<usize>, Vec<usize>) = moved.partition(|part| parts.contains(part));
     others.sort_unstable();
     let least = found.is_some_and(|SufficientSet { least, .. }| least);
     let out = gone.len() == parts.len();
-    plan.wanted = Some(Wanted { parts, others, least, out });
-    Ok(Plan { likes: likes.clone(), ..plan })
+    plan.selection = Some(SelectedRemoval { parts, others, is_minimal: least, is_complete: out });
+    Ok(Plan { first_identical: likes.clone(), ..plan })
 }
 
 impl Plan {
     /// Drops the steps that the selected parts do not need. Does nothing if a selected part does not come out.
     fn drop_unneeded_steps(&mut self, wanted: &[usize], count: usize) {
-        let is_there = |part: &usize| self.left.contains(part) || self.last.contains(part);
+        let is_there = |part: &usize| self.remaining.contains(part) || self.base.contains(part);
         if wanted.iter().any(is_there) {
             return;
         }
@@ -89,19 +92,19 @@ impl Plan {
         let mut at = BTreeMap::new();
         let steps = std::mem::take(&mut self.steps).into_iter().enumerate();
         for (k, mut step) in steps.filter(|(k, _)| needed[*k]) {
-            step.within = step.within.map(|k| at[&k]);
-            step.after = step.after.iter().map(|k| at[k]).collect();
+            step.group_step = step.group_step.map(|k| at[&k]);
+            step.predecessors = step.predecessors.iter().map(|k| at[k]).collect();
             at.insert(k, self.steps.len());
             self.steps.push(step);
         }
-        let main = self.steps.iter().filter(|step| step.within.is_none());
+        let main = self.steps.iter().filter(|step| step.group_step.is_none());
         let gone: Vec<usize> = main.flat_map(|step| step.parts.iter().copied()).collect();
-        self.last = (0..count).filter(|part| !gone.contains(part)).collect();
+        self.base = (0..count).filter(|part| !gone.contains(part)).collect();
     }
 
     /// Marks all steps that must precede a step.
     fn mark_needed(&self, step: usize, needed: &mut [bool]) {
-        for &k in &self.steps[step].after {
+        for &k in &self.steps[step].predecessors {
             if !std::mem::replace(&mut needed[k], true) {
                 self.mark_needed(k, needed);
             }
@@ -109,12 +112,12 @@ impl Plan {
     }
 }
 
-impl Wanted {
+impl SelectedRemoval {
     /// Returns a sentence that lists the removed parts.
-    pub fn words(&self, assembly: &Assembly) -> String {
-        let names = |parts: &[usize]| assembly.names(parts).join(", ");
+    pub fn describe(&self, assembly: &Assembly) -> String {
+        let names = |parts: &[usize]| assembly.part_names(parts).join(", ");
         let wanted = names(&self.parts);
-        if !self.out {
+        if !self.is_complete {
             return format!(
                 "{wanted}: no removal path was found, although all removable parts were removed"
             );
@@ -124,7 +127,7 @@ impl Wanted {
             1 => "1 other part goes".to_owned(),
             count => format!("{count} other parts go"),
         };
-        let least = if self.least {
+        let least = if self.is_minimal {
             "no fewer are enough, in single moves along the directions asked"
         } else {
             "fewer may be enough"

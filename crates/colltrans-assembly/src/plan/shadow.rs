@@ -12,7 +12,7 @@ use colltrans::{Aabb, Bounded};
 use glam::DVec3;
 
 use crate::bodies::Bodies;
-use crate::boxes::Living;
+use crate::boxes::RemainingBoxes;
 use crate::part::Part;
 
 /// The projections of the present parts along a direction.
@@ -35,17 +35,22 @@ impl Shadow {
         let seen = |p: &DVec3| DVec3::new(p.dot(u), p.dot(v), p.dot(direction));
         let around = |(part, present): (&Part, &bool)| {
             let vertices = present.then(|| part.solid().vertices().iter().map(seen));
-            Aabb::of_points(vertices.into_iter().flatten())
+            Aabb::from_points(vertices.into_iter().flatten())
         };
         let boxes: Vec<Aabb> = bodies.assembly().parts().iter().zip(present).map(around).collect();
-        let bounds = bodies.bounds_of(&boxes);
+        let bounds = bodies.node_bounds(&boxes);
         let (travels, behind) = (HashMap::new(), HashMap::new());
         Self { direction, boxes, bounds, travels, behind }
     }
 
     /// Returns the distance that a group travels until it is beyond all other present parts. Caches the result of
     /// single parts.
-    pub(super) fn travel_of(&mut self, bodies: &Bodies, parts: &[usize], living: &Living) -> f64 {
+    pub(super) fn travel_of(
+        &mut self,
+        bodies: &Bodies,
+        parts: &[usize],
+        living: &RemainingBoxes,
+    ) -> f64 {
         let &[part] = parts else {
             let each = parts.iter().map(|&part| self.travel_past(bodies, part, parts, living).0);
             return each.fold(0.0, f64::max);
@@ -67,18 +72,18 @@ impl Shadow {
         &self,
         bodies: &Bodies,
         parts: &[usize],
-        living: &Living,
+        living: &RemainingBoxes,
     ) -> Bounded {
         let all = self.bounds.first().map_or(0.0, |b| b.low.abs().max(b.high.abs()).max_element());
         let found = Cell::new(ZERO_TRAVEL);
         for &part in parts {
-            let own = bodies.seen(part, self.direction);
+            let own = bodies.direction_extents(part, self.direction);
             // The frame is rotated, so coordinates in the world may be larger.
             let reach = own.reach().max(2.0 * all);
             let is_further = |seen: &Aabb| own.may_be_behind(seen, reach, &found.get());
-            bodies.visit_high(living, &self.bounds, is_further, |other| {
+            bodies.visit_highest_first(living, &self.bounds, is_further, |other| {
                 if is_further(&self.boxes[other]) {
-                    let past = own.past(&bodies.seen(other, self.direction));
+                    let past = own.travel_beyond(&bodies.direction_extents(other, self.direction));
                     found.set(max_bounded(found.get(), past));
                 }
             });
@@ -102,7 +107,7 @@ impl Shadow {
         bodies: &Bodies,
         part: usize,
         group: &[usize],
-        living: &Living,
+        living: &RemainingBoxes,
     ) -> (f64, Option<usize>) {
         let own = self.boxes[part];
         let found = Cell::new((0.0, None));
@@ -110,7 +115,7 @@ impl Shadow {
             let lateral_gap = |k: usize| seen.low[k] > own.high[k] || own.low[k] > seen.high[k];
             seen.high.z - own.low.z > found.get().0 && !(0..2).any(lateral_gap)
         };
-        bodies.visit_high(living, &self.bounds, is_further, |other| {
+        bodies.visit_highest_first(living, &self.bounds, is_further, |other| {
             if !group.contains(&other) && is_further(&self.boxes[other]) {
                 found.set((self.boxes[other].high.z - own.low.z, Some(other)));
             }

@@ -11,16 +11,16 @@ use rayon::prelude::*;
 
 use super::ranking::Ranking;
 use crate::bodies::Bodies;
-use crate::boxes::Living;
+use crate::boxes::RemainingBoxes;
 use crate::error::AssemblyError;
-use crate::matrix::Matrix;
+use crate::matrix::ContactMatrix;
 use crate::watch::{Stage, Watch};
 
 /// The parts of a group that no other part of the group blocks.
 pub(super) struct SingleParts<'a> {
     bodies: &'a Bodies<'a>,
-    matrix: Matrix<'a>,
-    living: Living,
+    matrix: ContactMatrix<'a>,
+    living: RemainingBoxes,
     /// For each part, the number of present parts that must leave before it.
     waiting_counts: Vec<usize>,
     /// For each part, the parts that must leave after it.
@@ -41,7 +41,7 @@ impl<'a> SingleParts<'a> {
     /// b)` of `order` demands that `b` leaves before `a`.
     pub(super) fn new(
         bodies: &'a Bodies<'a>,
-        matrix: &Matrix<'a>,
+        matrix: &ContactMatrix<'a>,
         order: &[(usize, usize)],
         alive: &[bool],
         movable: impl Fn(usize, usize) -> bool,
@@ -53,14 +53,14 @@ impl<'a> SingleParts<'a> {
             waiting_counts[waiting] += 1;
             waiting_parts[before].push(waiting);
         }
-        let living = bodies.living(alive);
+        let living = bodies.remaining_parts(alive);
         let parts = (0..count).filter(|&part| alive[part]);
         let jobs = parts.flat_map(|part| (0..directions).map(move |k| (k, part)));
         let jobs: Vec<(usize, usize)> = jobs.filter(|&(k, part)| movable(k, part)).collect();
-        let tally = watch.stage(Stage::Rooms, jobs.len());
+        let tally = watch.start_stage(Stage::Rooms, jobs.len());
         let find = |workspace: &mut Workspace, &(k, part): &(usize, usize)| {
             let by = matrix.find_blocker(k, part, &living, workspace);
-            tally.step().map(|()| by)
+            tally.finish_item().map(|()| by)
         };
         let found: Result<Vec<Option<usize>>, AssemblyError> =
             jobs.par_iter().map_init(Workspace::default, find).collect();
@@ -107,7 +107,7 @@ impl<'a> SingleParts<'a> {
         for k in 0..self.watchers.len() {
             for watching in std::mem::take(&mut self.watchers[k][part]) {
                 let moving = watching as usize;
-                if !self.living.has(moving) {
+                if !self.living.contains(moving) {
                     continue;
                 }
                 let by = self.matrix.find_blocker(k, moving, &self.living, &mut self.workspace);

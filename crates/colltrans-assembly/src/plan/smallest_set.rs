@@ -11,8 +11,8 @@ use std::collections::{BinaryHeap, HashSet};
 use glam::DVec3;
 
 use crate::bodies::Bodies;
-use crate::constraints::Unit;
-use crate::matrix::Matrix;
+use crate::constraints::RigidUnit;
+use crate::matrix::ContactMatrix;
 use crate::part::Part;
 
 /// Maximum number of sets that are tried, and of 64-bit words that they take together.
@@ -29,10 +29,11 @@ pub(super) struct SufficientSet {
 /// Returns a smallest set that contains the selected parts and suffices to take them out along the directions of a
 /// matrix.
 ///
-/// Returns `None` if no set suffices. After [`MAX_SETS`] sets the search becomes greedy, and `least` is false.
+/// Returns `None` if no set was found to suffice. After [`MAX_SETS`] sets, or [`MAX_WORDS`] words of sets, the search
+/// becomes greedy, and `least` is false.
 pub(super) fn smallest_sufficient_set(
     bodies: &Bodies,
-    matrix: &Matrix,
+    matrix: &ContactMatrix,
     wanted: &[usize],
 ) -> Option<SufficientSet> {
     if wanted.len() >= bodies.len() {
@@ -116,20 +117,20 @@ struct SubsetSearch<'a> {
     /// move along the direction.
     blockers: Vec<Vec<Option<Vec<usize>>>>,
     /// Parts that leave as one body.
-    units: &'a [Unit],
+    units: &'a [RigidUnit],
     fixed: Vec<bool>,
 }
 
 impl<'a> SubsetSearch<'a> {
-    fn new(bodies: &Bodies<'a>, matrix: &Matrix, wanted: &'a [usize]) -> Self {
+    fn new(bodies: &Bodies<'a>, matrix: &ContactMatrix, wanted: &'a [usize]) -> Self {
         let (count, assembly) = (bodies.len(), bodies.assembly());
         let constraints = assembly.constraints();
         let along = |(k, d): (usize, &DVec3)| {
             let mut met: Vec<Option<Vec<usize>>> = (0..count)
                 .map(|part| constraints.allows_direction(&[part], *d).then(Vec::new))
                 .collect();
-            let arcs = matrix.meetings(k).iter().map(|m| (m.moving, m.fixed));
-            for (a, b) in arcs.chain(constraints.before().iter().map(|&[a, b]| (b, a))) {
+            let arcs = matrix.contacts_along(k).iter().map(|m| (m.moving, m.fixed));
+            for (a, b) in arcs.chain(constraints.order_pairs().iter().map(|&[a, b]| (b, a))) {
                 if let Some(met) = &mut met[a] {
                     met.push(b);
                 }
@@ -137,7 +138,7 @@ impl<'a> SubsetSearch<'a> {
             met
         };
         let blockers = matrix.directions().iter().enumerate().map(along).collect();
-        let fixed = assembly.parts().iter().map(Part::fixed).collect();
+        let fixed = assembly.parts().iter().map(Part::is_fixed).collect();
         Self { wanted, blockers, units: constraints.units(), fixed }
     }
 
@@ -152,7 +153,7 @@ impl<'a> SubsetSearch<'a> {
                 for &part in &parts {
                     leaving[part] = present[part] && !self.fixed[part] && met[part].is_some();
                 }
-                let units: Vec<&Unit> =
+                let units: Vec<&RigidUnit> =
                     self.units.iter().filter(|unit| !unit.is_released(&present)).collect();
                 let held = |part: usize, leaving: &[bool]| {
                     let stays = |&by: &usize| present[by] && !leaving[by];
@@ -199,7 +200,7 @@ impl<'a> SubsetSearch<'a> {
                 let as_one = as_one.flat_map(|unit| unit.parts.iter().copied());
                 add(&mut met.iter().copied().chain(as_one));
             }
-            for unit in with().filter(|unit| unit.apart) {
+            for unit in with().filter(|unit| unit.is_subassembly) {
                 add(&mut (0..present.len()).filter(|part| !unit.parts.contains(part)));
             }
         }

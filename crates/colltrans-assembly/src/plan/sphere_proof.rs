@@ -11,14 +11,14 @@
 
 use std::collections::HashMap;
 
-use colltrans::free::{CellBlocker, DirectionCell};
+use colltrans::removal::directions::{CellBlocker, DirectionCell};
 use colltrans::solid::StartOverlap;
 use glam::DVec3;
 
-use crate::blocking::Blocking;
+use crate::blocking::BlockingGraph;
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
-use crate::roles::Tolerated;
+use crate::roles::PairTolerance;
 use crate::watch::Watch;
 
 /// Maximum number of subdivisions of a side of the cube.
@@ -62,14 +62,14 @@ pub(super) fn prove_interlocked(
     if parts.len() > MAX_PARTS || !has_plain_contacts(bodies, parts, start) {
         return Ok(SphereProof::Open(Vec::new()));
     }
-    let among = bodies.mask(parts);
+    let among = bodies.part_mask(parts);
     let mut certifier = Certifier { bodies, parts, among, blockers: HashMap::new() };
     // Along `-d` all arcs are reversed, which preserves a single component, so half of the sphere suffices. Arcs of
     // order constraints are not reversed, and fixed parts need all cells.
     let constraints = bodies.assembly().constraints();
     let all = certifier.is_any_fixed(parts) || constraints.is_ordered(&certifier.among);
     let sides = if all { 6 } else { 3 };
-    let overlapping = bodies.overlapping().iter().flat_map(|&[a, b]| [(a, b), (b, a)]);
+    let overlapping = bodies.overlapping_pairs().iter().flat_map(|&[a, b]| [(a, b), (b, a)]);
     let order = constraints.order_arcs(&certifier.among);
     let arcs: Vec<(usize, usize)> = overlapping.chain(order).collect();
     let all = DirectionCell::sphere().into_iter().enumerate();
@@ -78,7 +78,7 @@ pub(super) fn prove_interlocked(
         wanted.map(|(_, cell)| CellTask { cell, arcs: arcs.clone() }).collect();
     let (mut cells, mut open) = (0, Vec::new());
     while let Some(mut task) = tasks.pop() {
-        watch.check()?;
+        watch.check_cancelled()?;
         cells += 1;
         if certifier.prove_cell(&mut task) {
             continue;
@@ -100,11 +100,12 @@ pub(super) fn prove_interlocked(
 fn has_plain_contacts(bodies: &Bodies, parts: &[usize], start: StartOverlap) -> bool {
     let assembly = bodies.assembly();
     let lets_pass = |a, b| {
-        let own = bodies.tolerated([a, b]);
-        matches!(own, Some(Tolerated::Bent(_) | Tolerated::Crossing))
+        let own = bodies.tolerated_contacts([a, b]);
+        matches!(own, Some(PairTolerance::Snap(_) | PairTolerance::Crossing))
     };
-    let ignored =
-        |a: usize| parts.iter().any(|&b| assembly.ignored(a, b).is_some() || lets_pass(a, b));
+    let ignored = |a: usize| {
+        parts.iter().any(|&b| assembly.ignored_contacts(a, b).is_some() || lets_pass(a, b))
+    };
     start == StartOverlap::Refuse
         && bodies.fit().tolerance() >= 0.0
         && !parts.iter().any(|&a| assembly.parts()[a].is_surface() || ignored(a))
@@ -116,8 +117,8 @@ impl<'a> Certifier<'a> {
         let middle = task.cell.center().normalize();
         let mut tested = Vec::new();
         loop {
-            let graph = Blocking::from_arcs(task.arcs.iter().copied(), &self.among);
-            let mut groups = graph.removable();
+            let graph = BlockingGraph::from_arcs(task.arcs.iter().copied(), &self.among);
+            let mut groups = graph.removable_groups();
             groups.retain(|group| group.len() < self.parts.len() && !self.is_any_fixed(group));
             if groups.is_empty() {
                 return true;
@@ -141,12 +142,12 @@ impl<'a> Certifier<'a> {
         tested: &mut Vec<[usize; 2]>,
     ) -> Option<(usize, usize)> {
         for &a in group {
-            for (_, b) in self.bodies.ahead(a, middle) {
+            for (_, b) in self.bodies.parts_ahead(a, middle) {
                 if !self.among[b] || group.contains(&b) || tested.contains(&[a, b]) {
                     continue;
                 }
                 tested.push([a, b]);
-                if self.cell_blocker([a, b]).is_some_and(|of| of.covers(cell)) {
+                if self.cell_blocker([a, b]).is_some_and(|of| of.is_blocked(cell)) {
                     return Some((a, b));
                 }
             }
@@ -160,6 +161,6 @@ impl<'a> Certifier<'a> {
     }
 
     fn is_any_fixed(&self, parts: &[usize]) -> bool {
-        parts.iter().any(|&part| self.bodies.assembly().parts()[part].fixed())
+        parts.iter().any(|&part| self.bodies.assembly().parts()[part].is_fixed())
     }
 }

@@ -14,7 +14,7 @@ use glam::{DVec2, DVec3};
 
 use crate::bodies::Bodies;
 use crate::inertia;
-use crate::liaisons::{footprint_corners, reach};
+use crate::liaisons::{contact_reach, footprint_corners};
 
 /// Stability of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,8 +41,8 @@ impl Support {
         let parts = bodies.assembly().parts();
         let (u, v) = up.any_orthonormal_pair();
         let seen = |p: DVec3| DVec2::new(p.dot(u), p.dot(v));
-        let (solid, reach) = (parts[part].solid(), reach(bodies));
-        let center = (!parts[part].is_surface()).then(|| inertia::center(solid)).flatten();
+        let (solid, reach) = (parts[part].solid(), contact_reach(bodies));
+        let center = (!parts[part].is_surface()).then(|| inertia::volume_center(solid)).flatten();
         let corners = |&below: &usize| {
             let all = footprint_corners(solid, parts[below].solid(), reach, -up);
             (below, convex_hull(all.into_iter().map(seen).collect()))

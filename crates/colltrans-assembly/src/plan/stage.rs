@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Leg, Passed, Plan, Step};
-use crate::likes::{common_name, pairs_alike};
+use super::{Leg, Plan, Step, ToleratedContact};
+use crate::identical::{common_name, group_identical_pairs};
 use crate::part::Assembly;
 
 /// Maximum difference of the numbers of turns within a stage.
@@ -43,7 +43,7 @@ impl Plan {
     /// Corresponding stages of a run remove identical parts, along the same direction or equally far. Returns for
     /// each group the indices of the first run and the number of runs. A stage that does not repeat is a run of its
     /// own.
-    pub fn repeats(&self, stages: &[Range<usize>]) -> Vec<(Range<usize>, usize)> {
+    pub fn repeated_stages(&self, stages: &[Range<usize>]) -> Vec<(Range<usize>, usize)> {
         let mut found = Vec::new();
         let mut at = 0;
         while at < stages.len() {
@@ -71,7 +71,8 @@ impl Plan {
     /// Checks whether two stages are the same operation on different parts.
     fn are_repetitions(&self, a: &Range<usize>, b: &Range<usize>) -> bool {
         let likes = |step: &Step| {
-            let mut likes: Vec<usize> = step.parts.iter().map(|&part| self.likes[part]).collect();
+            let mut likes: Vec<usize> =
+                step.parts.iter().map(|&part| self.first_identical[part]).collect();
             likes.sort_unstable();
             likes
         };
@@ -85,8 +86,11 @@ impl Plan {
             |a: &[Leg], b: &[Leg]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| leg([a, b]));
         let step = |(a, b): (&Step, &Step)| {
             // Either both take apart a group that was removed before, or neither does.
-            let within = a.within.is_some() == b.within.is_some();
-            within && likes(a) == likes(b) && legs(&a.path, &b.path) && legs(&a.back, &b.back)
+            let within = a.group_step.is_some() == b.group_step.is_some();
+            within
+                && likes(a) == likes(b)
+                && legs(&a.path, &b.path)
+                && legs(&a.return_legs, &b.return_legs)
         };
         let (first, second) = (&self.steps[a.clone()], &self.steps[b.clone()]);
         first.len() == second.len() && first.iter().zip(second).all(step)
@@ -96,11 +100,11 @@ impl Plan {
     ///
     /// This is the name of their subassembly with the part names. For several identical parts it is their number and
     /// the common beginning of their names. Otherwise it is the list of names.
-    pub fn takes(&self, assembly: &Assembly, stage: &Range<usize>) -> String {
+    pub fn describe_stage(&self, assembly: &Assembly, stage: &Range<usize>) -> String {
         let steps = &self.steps[stage.clone()];
         let all: Vec<usize> = steps.iter().flat_map(|step| step.parts.iter().copied()).collect();
-        let names = assembly.names(&all);
-        if let (Some(name), [_]) = (assembly.constraints().name(&all), steps) {
+        let names = assembly.part_names(&all);
+        if let (Some(name), [_]) = (assembly.constraints().group_name(&all), steps) {
             return format!("{name} ({})", names.join(", "));
         }
         match common_name(&names) {
@@ -110,18 +114,18 @@ impl Plan {
     }
 
     /// Returns the common direction of the steps of a stage, or `None` if their directions differ.
-    pub fn direction(&self, stage: &Range<usize>) -> Option<DVec3> {
+    pub fn stage_direction(&self, stage: &Range<usize>) -> Option<DVec3> {
         let first = self.steps[stage.start].direction;
         self.steps[stage.clone()].iter().all(|step| step.direction == first).then_some(first)
     }
 
     /// Returns the largest travel of the steps of a stage. For a path of several moves the last move counts.
-    pub fn travel(&self, stage: &Range<usize>) -> f64 {
+    pub fn stage_travel(&self, stage: &Range<usize>) -> f64 {
         self.steps[stage.clone()].iter().map(|step| step.travel.value).fold(0.0, f64::max)
     }
 
     /// Returns the step numbers of a stage, counted from 1: "3" or "3-10".
-    pub fn numbers(stage: &Range<usize>) -> String {
+    pub fn step_numbers(stage: &Range<usize>) -> String {
         match stage.len() {
             1 => stage.end.to_string(),
             _ => format!("{}-{}", stage.start + 1, stage.end),
@@ -129,19 +133,23 @@ impl Plan {
     }
 
     /// Returns the tolerated contacts of a stage, of pairs with a fit of their own.
-    pub fn passed(&self, stage: &Range<usize>) -> Vec<Passed> {
-        self.steps[stage.clone()].iter().flat_map(|step| step.passed.iter().copied()).collect()
+    pub fn stage_contacts(&self, stage: &Range<usize>) -> Vec<ToleratedContact> {
+        self.steps[stage.clone()].iter().flat_map(|step| step.tolerated.iter().copied()).collect()
     }
 
     /// Returns descriptions of the tolerated contacts of a stage, with identical pairs combined: "4 x bolt and plate:
     /// thread, ...".
-    pub fn passed_words(&self, assembly: &Assembly, stage: &Range<usize>) -> Vec<String> {
-        let all = self.passed(stage);
-        let description = |passed: &Passed| passed.tolerated.words(passed.role);
+    pub fn describe_stage_contacts(
+        &self,
+        assembly: &Assembly,
+        stage: &Range<usize>,
+    ) -> Vec<String> {
+        let all = self.stage_contacts(stage);
+        let description = |passed: &ToleratedContact| passed.tolerated.describe(passed.role);
         let all = all.iter().map(|passed| (passed.parts, description(passed), description(passed)));
         let describe_group = |(description, sides): (String, [Vec<usize>; 2])| {
             let [a, b] = sides.map(|side| {
-                let names = assembly.names(&side);
+                let names = assembly.part_names(&side);
                 match common_name(&names) {
                     Some(name) if names.len() > 1 => format!("{} x {name}", names.len()),
                     _ => names.join(", "),
@@ -149,16 +157,16 @@ impl Plan {
             });
             format!("{a} and {b}: {description}")
         };
-        pairs_alike(&self.likes, all).into_iter().map(describe_group).collect()
+        group_identical_pairs(&self.first_identical, all).into_iter().map(describe_group).collect()
     }
 
     /// Checks whether a step belongs to the stage before it. `one_way` states whether all of them share one
     /// direction.
     fn joins_stage(&self, stage: &Range<usize>, step: &Step, one_way: bool) -> bool {
         let first = &self.steps[stage.start];
-        let turns = |step: &Step| step.turn().map_or(0.0, |turn| turn.turns);
+        let turns = |step: &Step| step.first_turn().map_or(0.0, |turn| turn.turns);
         let plain = |step: &Step| {
-            let moves = if step.turn().is_some() { 2 } else { 1 };
+            let moves = if step.first_turn().is_some() { 2 } else { 1 };
             step.parts.len() == 1 && step.path.len() == moves
         };
         let equally = |other: &Step| {
@@ -167,10 +175,10 @@ impl Plan {
         };
         plain(first)
             && plain(step)
-            && self.likes[first.parts[0]] == self.likes[step.parts[0]]
+            && self.first_identical[first.parts[0]] == self.first_identical[step.parts[0]]
             && (one_way || self.steps[stage.clone()].iter().all(equally))
-            && first.within == step.within
+            && first.group_step == step.group_step
             && (turns(first) - turns(step)).abs() < SAME_TURNS
-            && !step.after.iter().any(|k| stage.contains(k))
+            && !step.predecessors.iter().any(|k| stage.contains(k))
     }
 }

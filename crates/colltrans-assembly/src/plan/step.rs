@@ -6,7 +6,7 @@ use colltrans::motion::{Motion, MotionError};
 use colltrans::{Bounded, Pose};
 use glam::{DQuat, DVec3};
 
-use super::Passed;
+use super::ToleratedContact;
 use crate::part::Assembly;
 
 /// Maximum number of ignored pairs that are named for a step.
@@ -36,9 +36,9 @@ pub struct Turn {
     pub turns: f64,
     /// Initial rotation in turns, of the same sign convention. With it and `aside` the threads overlap least, or have
     /// play.
-    pub phase: f64,
+    pub initial_turns: f64,
     /// Initial displacement of the parts; 0 if the file has them in this position.
-    pub aside: DVec3,
+    pub offset: DVec3,
     /// The proof of the motion, or the reason why it is not proven.
     pub proof: Result<TurnProof, String>,
 }
@@ -50,7 +50,7 @@ pub struct Turn {
 pub struct TurnProof {
     /// Tolerance of the thread: both sides are shrunk by half of it.
     pub tolerance: f64,
-    /// Number of pairs of body parts, in intervals of time, that the proof visited.
+    /// Number of pairs of tree nodes, each with a time interval, that the proof visited.
     pub pairs: u64,
 }
 
@@ -65,45 +65,45 @@ impl Leg {
     ///
     /// # Errors
     /// Returns an error if a number is out of range.
-    pub fn motion(&self) -> Result<Motion, MotionError> {
+    pub fn to_motion(&self) -> Result<Motion, MotionError> {
         let Some(turn) = &self.turn else {
-            return Motion::slide(Pose::IDENTITY, self.direction * self.travel);
+            return Motion::translation(Pose::IDENTITY, self.direction * self.travel);
         };
-        let start = if turn.phase == 0.0 && turn.aside == DVec3::ZERO {
+        let start = if turn.initial_turns == 0.0 && turn.offset == DVec3::ZERO {
             Pose::IDENTITY
         } else {
-            let (own, angle) = (turn.point - turn.aside, TAU * turn.phase);
-            let turned = Motion::turn(Pose::IDENTITY, own, self.direction, angle)?;
-            turned.at(1.0)?.translated(turn.aside)?
+            let (own, angle) = (turn.point - turn.offset, TAU * turn.initial_turns);
+            let turned = Motion::rotation_about(Pose::IDENTITY, own, self.direction, angle)?;
+            turned.pose_at(1.0)?.translated_by(turn.offset)?
         };
         Motion::screw(start, turn.point, self.direction, TAU * turn.turns, self.travel)
     }
 
     /// Returns the position of a point after a fraction of the leg, from 0 to 1.
-    pub fn moved(&self, point: DVec3, share: f64) -> DVec3 {
+    pub fn move_point(&self, point: DVec3, share: f64) -> DVec3 {
         let by = self.direction * (self.travel * share);
         let Some(turn) = &self.turn else { return point + by };
-        let own = turn.point - turn.aside;
-        turn.point + turn.rotation(self, share) * (point - own) + by
+        let own = turn.point - turn.offset;
+        turn.point + turn.rotation_at(self, share) * (point - own) + by
     }
 }
 
 impl Turn {
     /// Returns the rotation of the parts after a fraction of the leg, from 0 to 1.
-    pub fn rotation(&self, leg: &Leg, share: f64) -> DQuat {
-        DQuat::from_axis_angle(leg.direction, TAU * (self.phase + self.turns * share))
+    pub fn rotation_at(&self, leg: &Leg, share: f64) -> DQuat {
+        DQuat::from_axis_angle(leg.direction, TAU * (self.initial_turns + self.turns * share))
     }
 
     /// Returns a description of the turns and of their proof.
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         let turns = format!("{:.3} turns", self.turns.abs());
         let hand = if self.turns < 0.0 { ", clockwise if seen against the direction" } else { "" };
         let mut begin = String::new();
-        if self.phase != 0.0 {
-            begin = format!(", from an initial rotation of {:.3} turns", self.phase);
+        if self.initial_turns != 0.0 {
+            begin = format!(", from an initial rotation of {:.3} turns", self.initial_turns);
         }
-        if self.aside != DVec3::ZERO {
-            let aside = self.aside.length();
+        if self.offset != DVec3::ZERO {
+            let aside = self.offset.length();
             begin = format!("{begin}, displaced by {aside:.2e} to align the axes");
         }
         match &self.proof {
@@ -132,20 +132,20 @@ pub struct Step {
     pub path: Vec<Leg>,
     /// The reversed moves of parts that made room, after the group has left, and of parts of the group that left with
     /// a relative displacement. After each step all remaining parts are in their initial poses.
-    pub back: Vec<Leg>,
+    pub return_legs: Vec<Leg>,
     /// For a step that takes a group apart: the index of the step that removed the group.
-    pub within: Option<usize>,
+    pub group_step: Option<usize>,
     /// Indices of the steps that must precede this one, in increasing order: those that removed parts in its way,
     /// that order constraints demand, or that removed the enclosing group. A path of several moves follows all
     /// earlier steps of its group. Other steps may also come later.
-    pub after: Vec<usize>,
+    pub predecessors: Vec<usize>,
     /// Pairs to which the step does not apply, the moving part first. Their overlap at the start, or all of their
     /// contacts, are ignored on request.
     pub ignored: Vec<[usize; 2]>,
     /// Tolerated contacts of pairs that have a [role](crate::roles) or a tolerance of their own.
-    pub passed: Vec<Passed>,
+    pub tolerated: Vec<ToleratedContact>,
     /// Parts that nothing carries after the step, in increasing order. They must be held.
-    pub falls: Vec<usize>,
+    pub falling: Vec<usize>,
     /// Parts that stood before the step and whose centre of mass is then outside of their support. They tip unless
     /// they are supported laterally.
     pub off_balance: Vec<usize>,
@@ -156,8 +156,8 @@ pub struct Step {
 
 impl Step {
     /// Returns a description of the ignored pairs, or `None` if there are none.
-    pub fn ignores(&self, assembly: &Assembly) -> Option<String> {
-        let pair = |p: &[usize; 2]| assembly.names(p).join(" and ");
+    pub fn describe_ignored(&self, assembly: &Assembly) -> Option<String> {
+        let pair = |p: &[usize; 2]| assembly.part_names(p).join(" and ");
         let named: Vec<String> = self.ignored.iter().take(MAX_NAMED).map(pair).collect();
         let more = match self.ignored.len().saturating_sub(MAX_NAMED) {
             0 => String::new(),
@@ -167,26 +167,26 @@ impl Step {
     }
 
     /// Returns descriptions of the parts that fall or are off balance after the step.
-    pub fn unsettled(&self, assembly: &Assembly) -> Vec<String> {
+    pub fn describe_unsettled(&self, assembly: &Assembly) -> Vec<String> {
         let list_parts = |parts: &[usize], what: &str| {
-            let names = assembly.names(parts).join(", ");
+            let names = assembly.part_names(parts).join(", ");
             (!parts.is_empty()).then(|| format!("{what}: {names}"))
         };
-        let falls = list_parts(&self.falls, "then rests on nothing");
+        let falls = list_parts(&self.falling, "then rests on nothing");
         let tips = list_parts(&self.off_balance, "then off balance");
         falls.into_iter().chain(tips).collect()
     }
 
     /// Returns the first turn of the path, or `None` if the step has none.
-    pub fn turn(&self) -> Option<&Turn> {
+    pub fn first_turn(&self) -> Option<&Turn> {
         self.path.iter().find_map(|leg| leg.turn.as_ref())
     }
 
     /// Returns all moves with their displacements as pictures show them: the group moves `beyond` its travel before
     /// other parts return.
-    pub fn shown(&self, beyond: f64) -> impl Iterator<Item = (&Leg, DVec3)> {
+    pub fn displayed_legs(&self, beyond: f64) -> impl Iterator<Item = (&Leg, DVec3)> {
         let last = self.path.len() - 1;
-        self.path.iter().chain(&self.back).enumerate().map(move |(k, leg)| {
+        self.path.iter().chain(&self.return_legs).enumerate().map(move |(k, leg)| {
             let travel = if k == last { leg.travel + beyond } else { leg.travel };
             (leg, leg.direction * travel)
         })

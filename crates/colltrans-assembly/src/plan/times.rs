@@ -12,7 +12,7 @@ use crate::roles::Role;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
-pub struct Times {
+pub struct HandlingTimes {
     /// Grasping the parts that leave.
     pub grasp: f64,
     /// Each move, of the parts that leave or of parts that make room.
@@ -35,7 +35,7 @@ pub struct Times {
     pub thread: f64,
 }
 
-impl Default for Times {
+impl Default for HandlingTimes {
     fn default() -> Self {
         Self {
             grasp: 1.5,
@@ -52,10 +52,10 @@ impl Default for Times {
     }
 }
 
-impl Times {
+impl HandlingTimes {
     /// Returns the name and the value of the first entry outside of 0 to 1e9 seconds, or `None` if all entries are
     /// valid.
-    pub fn wrong(&self) -> Option<(&'static str, f64)> {
+    pub fn first_invalid(&self) -> Option<(&'static str, f64)> {
         let all = [
             ("grasp", self.grasp),
             ("move", self.r#move),
@@ -72,18 +72,18 @@ impl Times {
     }
 
     /// Returns the seconds of each step of a plan, in its order.
-    pub fn of(&self, plan: &Plan) -> Vec<f64> {
+    pub fn step_seconds(&self, plan: &Plan) -> Vec<f64> {
         let mut last = None;
         let step = |step: &super::Step| {
-            let shape = plan.likes[step.parts[0]];
+            let shape = plan.first_identical[step.parts[0]];
             let (turned, other) = last.map_or((false, false), |(direction, known)| {
                 (direction != step.direction, known != shape)
             });
             last = Some((step.direction, shape));
-            let moves = (step.path.len() + step.back.len()) as f64;
-            let held = (step.falls.len() + step.off_balance.len()) as f64;
+            let moves = (step.path.len() + step.return_legs.len()) as f64;
+            let held = (step.falling.len() + step.off_balance.len()) as f64;
             let when = |what: bool, seconds: f64| if what { seconds } else { 0.0 };
-            let passed = step.passed.iter().map(|passed| match passed.role {
+            let passed = step.tolerated.iter().map(|passed| match passed.role {
                 Some(Role::Press) => self.press,
                 Some(Role::Soft) => self.soft,
                 Some(Role::Snap) => self.snap,
@@ -108,10 +108,13 @@ mod tests {
 
     #[test]
     fn times_accept_known_names_and_reject_negative_seconds() {
-        let read = |text: &str| serde_json::from_str::<Times>(text);
-        assert_eq!(read(r#"{"grasp": 2.5}"#).unwrap(), Times { grasp: 2.5, ..Times::default() });
+        let read = |text: &str| serde_json::from_str::<HandlingTimes>(text);
+        assert_eq!(
+            read(r#"{"grasp": 2.5}"#).unwrap(),
+            HandlingTimes { grasp: 2.5, ..HandlingTimes::default() }
+        );
         assert!(read(r#"{"grip": 2.5}"#).is_err());
-        assert_eq!(read(r#"{"move": -1}"#).unwrap().wrong(), Some(("move", -1.0)));
-        assert_eq!(Times::default().wrong(), None);
+        assert_eq!(read(r#"{"move": -1}"#).unwrap().first_invalid(), Some(("move", -1.0)));
+        assert_eq!(HandlingTimes::default().first_invalid(), None);
     }
 }

@@ -12,7 +12,7 @@ use colltrans::{Bounded, QueryError};
 use glam::DVec3;
 
 use super::step::{Leg, Turn, TurnProof};
-use crate::bodies::{Bodies, Turned, two_digits_up};
+use crate::bodies::{Bodies, ScrewOutcome, two_digits_up};
 use crate::threads::{Seat, Thread};
 use colltrans::solid::StartOverlap;
 
@@ -72,11 +72,11 @@ fn threads_along(
     present: &[bool],
     d: DVec3,
 ) -> Vec<([usize; 2], Thread)> {
-    let pairs = bodies.partners(parts, present);
+    let pairs = bodies.present_partners(parts, present);
     let along = |thread: &Thread| {
         thread.pitch.is_some() && thread.axis[1].cross(d).length() < MAX_STEP_ANGLE
     };
-    let found = pairs.filter_map(|pair| Some((pair, bodies.thread(pair).filter(along)?)));
+    let found = pairs.filter_map(|pair| Some((pair, bodies.pair_thread(pair).filter(along)?)));
     found.collect()
 }
 
@@ -95,7 +95,7 @@ struct ScrewMotion {
 
 impl ScrewMotion {
     fn new(bodies: &Bodies, (pair, thread): ([usize; 2], Thread), d: DVec3) -> Option<Self> {
-        let seat = bodies.seat(pair, &thread)?;
+        let seat = bodies.screw_seat(pair, &thread)?;
         let is_second = pair[0] > pair[1];
         let is_inner = (thread.screw == 1) == is_second;
         let (sense, mut axis) = axis_along(&thread, d);
@@ -103,8 +103,8 @@ impl ScrewMotion {
             axis = d;
         }
         // A moving hole takes the opposite direction of a moving screw.
-        let way = seat.ways[usize::from((sense < 0.0) == is_inner)];
-        let point = thread.axis[0] + if is_inner { seat.aside } else { DVec3::ZERO };
+        let way = seat.exit_travels[usize::from((sense < 0.0) == is_inner)];
+        let point = thread.axis[0] + if is_inner { seat.lateral_offset } else { DVec3::ZERO };
         let turns = way / thread.pitch?;
         Some(Self { thread, is_inner, seat, point, axis, way, turns })
     }
@@ -133,16 +133,17 @@ impl ScrewMotion {
             point: self.point,
             turns: self.turns,
             // Adding 0 removes the sign of zeros.
-            phase: sense * self.seat.phase + 0.0,
-            aside: self.seat.aside * if self.is_inner { 1.0 } else { -1.0 } + DVec3::ZERO,
+            initial_turns: sense * self.seat.phase + 0.0,
+            offset: self.seat.lateral_offset * if self.is_inner { 1.0 } else { -1.0 } + DVec3::ZERO,
             proof: Err(String::new()),
         };
         let (parts, direction) = (parts.to_vec(), self.axis);
         Leg { parts, direction, travel: self.way, turn: Some(turn) }
     }
 
-    /// Tries to prove the leg and the straight motion after it. Returns the tolerance of the thread that this needs,
-    /// or the reason of the failure.
+    /// Tries to prove the turning leg and the straight motion after it, against the parts `others`. Returns the
+    /// tolerance of the thread that this needs with the number of node pairs that were visited, or the reason of the
+    /// failure.
     fn prove_turn(
         &self,
         bodies: &Bodies,
@@ -161,7 +162,7 @@ impl ScrewMotion {
                 name(screw)
             ));
         }
-        let motion = leg.motion().map_err(|error| error.to_string())?;
+        let motion = leg.to_motion().map_err(|error| error.to_string())?;
         let (mut tolerance, mut pairs) = (0.0_f64, 0);
         for (pair, _) in threads {
             let (used, more) = self.find_tolerance(bodies, *pair, &motion)?;
@@ -170,19 +171,21 @@ impl ScrewMotion {
         let is_thread = |pair: [usize; 2]| threads.iter().any(|(known, _)| *known == pair);
         for pair in leg.parts.iter().flat_map(|&a| others.iter().map(move |&b| [a, b])) {
             if is_thread(pair)
-                || bodies.is_let_pass(pair, start)
+                || bodies.disregards_other_contacts(pair, start)
                 || !bodies.may_meet_turning(pair, [self.point, self.axis])
             {
                 continue;
             }
             let [part, other] = pair.map(name);
             let along = (&motion, self.axis);
-            match bodies.turned(pair, along, None).map_err(|error| error.to_string())? {
-                Turned::Free(more) => pairs += more,
-                Turned::Overlapping(_) => {
+            match bodies.screw_outcome(pair, along, None).map_err(|error| error.to_string())? {
+                ScrewOutcome::Free(more) => pairs += more,
+                ScrewOutcome::Overlapping(_) => {
                     return Err(format!("{part} and {other} overlap at the start of the motion"));
                 }
-                Turned::Blocked(share) => return Err(self.contact_message(share, part, other)),
+                ScrewOutcome::Blocked(share) => {
+                    return Err(self.contact_message(share, part, other));
+                }
             }
         }
         Ok(TurnProof { tolerance, pairs })
@@ -197,7 +200,7 @@ impl ScrewMotion {
         }
     }
 
-    /// Searches for a tolerance with which a thread turns freely. Returns it with the number of pairs that were
+    /// Searches for a tolerance with which a thread turns freely. Returns it with the number of node pairs that were
     /// visited, or the reason of the failure.
     fn find_tolerance(
         &self,
@@ -206,25 +209,28 @@ impl ScrewMotion {
         motion: &Motion,
     ) -> Result<(f64, u64), String> {
         let depth = self.thread.radii[1] - self.thread.radii[0];
-        let given = bodies.assembly().pair(pair[0], pair[1]).and_then(|fit| fit.tolerance);
+        let given = bodies.assembly().pair_fit(pair[0], pair[1]).and_then(|fit| fit.tolerance);
         let mut tolerance = given.unwrap_or_else(|| bodies.fit().tolerance().max(0.0));
         let most = given.unwrap_or(MAX_TOLERANCE * depth).max(tolerance);
         let names = pair.map(|part| bodies.assembly().parts()[part].name());
         let refused = |error: QueryError| error.to_string();
         loop {
             let along = (motion, self.axis);
-            let (least, why) = match bodies.turned(pair, along, Some(tolerance)).map_err(refused)? {
-                Turned::Free(pairs) => return Ok((tolerance, pairs)),
-                Turned::Overlapping(least) => {
-                    let deep = least.map_or("deeply".into(), |deep| format!("by {deep:.2e}"));
-                    let why = format!(
-                        "the threads of {} and {} overlap {deep} in any rotation",
-                        names[0], names[1]
-                    );
-                    (least.unwrap_or(f64::INFINITY) * TOLERANCE_FACTOR, why)
-                }
-                Turned::Blocked(share) => (0.0, self.contact_message(share, names[0], names[1])),
-            };
+            let (least, why) =
+                match bodies.screw_outcome(pair, along, Some(tolerance)).map_err(refused)? {
+                    ScrewOutcome::Free(pairs) => return Ok((tolerance, pairs)),
+                    ScrewOutcome::Overlapping(least) => {
+                        let deep = least.map_or("deeply".into(), |deep| format!("by {deep:.2e}"));
+                        let why = format!(
+                            "the threads of {} and {} overlap {deep} in any rotation",
+                            names[0], names[1]
+                        );
+                        (least.unwrap_or(f64::INFINITY) * TOLERANCE_FACTOR, why)
+                    }
+                    ScrewOutcome::Blocked(share) => {
+                        (0.0, self.contact_message(share, names[0], names[1]))
+                    }
+                };
             let next = two_digits_up(least.max(2.0 * tolerance).max(FIRST_TOLERANCE * depth));
             if next > most || tolerance >= most {
                 return Err(format!("{why}; the maximum tolerance is {most:.2e}"));

@@ -6,10 +6,10 @@ use maud::{Markup, html};
 
 use super::sheet::{self, direction_text, step_list, taken_parts_text, travel_text};
 use super::words::{number_runs, time_text};
-use super::{Report, arrow, picture_markup, short};
+use super::{Report, direction_name, picture_markup, short_number};
 use crate::Fit;
 use crate::map;
-use crate::plan::Passed;
+use crate::plan::ToleratedContact;
 use crate::roles::{PairFit, Role};
 use crate::suggest::Suggestion;
 
@@ -56,7 +56,7 @@ fn order_section(r: &Report) -> Markup {
                     tbody {
                         @for stage in r.f.plan.stages() {
                             @let all: Vec<usize> = stage.clone().collect();
-                            @let after: Vec<usize> = steps[stage.clone()].iter().flat_map(|s| s.after.iter().copied()).collect();
+                            @let after: Vec<usize> = steps[stage.clone()].iter().flat_map(|s| s.predecessors.iter().copied()).collect();
                             @let rounds: Vec<usize> = all.iter().map(|&k| r.rounds[k]).collect();
                             tr {
                                 td { (number_runs(&all)) }
@@ -94,7 +94,7 @@ fn assembly_section(r: &Report) -> Markup {
             h3 { "Putting it together" }
             p {
                 "The steps in reverse order, with each move reversed; the same proofs apply"
-                @if !plan.last.is_empty() { ". It begins with " (r.words.name_list(&plan.last)) }
+                @if !plan.base.is_empty() { ". It begins with " (r.words.name_list(&plan.base)) }
                 "."
             }
             ol {
@@ -107,7 +107,7 @@ fn assembly_section(r: &Report) -> Markup {
                         } @else {
                             (direction_text(r, stage, -1.0))
                         }
-                        @if step.within.is_some() { ", before its group is put in" }
+                        @if step.group_step.is_some() { ", before its group is put in" }
                     }
                 }
             }
@@ -118,11 +118,11 @@ fn assembly_section(r: &Report) -> Markup {
 /// Returns the list of interlocked groups with the reasons.
 fn interlocked_section(r: &Report) -> Markup {
     html! {
-        @if !r.f.plan.stuck.is_empty() {
+        @if !r.f.plan.interlocked.is_empty() {
             h3 { "What stays together, and why" }
             ul {
-                @for s in &r.f.plan.stuck {
-                    @let (reason, details) = (s.reason(r.f.bodies), s.details(r.f.bodies));
+                @for s in &r.f.plan.interlocked {
+                    @let (reason, details) = (s.reason_sentence(r.f.bodies), s.evidence_sentences(r.f.bodies));
                     li { b { (r.words.name_list(&s.parts)) ": " (reason) } " " (details) }
                 }
             }
@@ -136,18 +136,19 @@ fn constraints_section(r: &Report) -> Markup {
     let constraints = assembly.constraints();
     let name = |part: usize| assembly.parts()[part].name();
     let mut items: Vec<String> = sheet::passed_texts(r, &pairs_with_fit(r));
-    let before = constraints.before().iter();
+    let before = constraints.order_pairs().iter();
     items.extend(before.map(|&[a, b]| format!("{} leaves before {}", name(a), name(b))));
     items.extend(constraints.units().iter().map(|unit| {
         let names = words.name_list(&unit.parts);
-        let apart = if unit.apart { ", and is then taken apart" } else { ", and stays together" };
+        let apart =
+            if unit.is_subassembly { ", and is then taken apart" } else { ", and stays together" };
         match &unit.name {
             Some(known) => format!("{known} ({names}) leaves as one{apart}"),
             None => format!("{names} leave as one"),
         }
     }));
-    items.extend(constraints.never().iter().map(|never| {
-        let within = short(never.within);
+    items.extend(constraints.forbidden_directions().iter().map(|never| {
+        let within = short_number(never.angle_degrees);
         format!(
             "{} never goes {}, nor within {within}° of that",
             name(never.part),
@@ -164,12 +165,16 @@ fn constraints_section(r: &Report) -> Markup {
 }
 
 /// Returns all pairs with a fit of their own.
-fn pairs_with_fit(r: &Report) -> Vec<Passed> {
+fn pairs_with_fit(r: &Report) -> Vec<ToleratedContact> {
     let bodies = r.f.bodies;
     let pair = |(parts, fit): ([usize; 2], PairFit)| {
-        Some(Passed { parts, role: fit.role, tolerated: bodies.tolerated(parts)? })
+        Some(ToleratedContact {
+            parts,
+            role: fit.role,
+            tolerated: bodies.tolerated_contacts(parts)?,
+        })
     };
-    bodies.assembly().pairs().filter_map(pair).collect()
+    bodies.assembly().pair_fits().filter_map(pair).collect()
 }
 
 /// Returns the number of overlapping pairs, and suggestions for them.
@@ -178,7 +183,7 @@ fn overlaps_section(r: &Report) -> Markup {
     let remaining = f.start.remaining().count();
     html! {
         @if remaining > 0 {
-            @let apart = matches!(f.bodies.fit(), Fit::Apart(_));
+            @let apart = matches!(f.bodies.fit(), Fit::MinGap(_));
             h3 { @if apart { "Parts that are too near to each other" } @else { "Parts that run into each other" } }
             p {
                 (remaining) @if remaining == 1 { " pair " } @else { " pairs " }
@@ -188,8 +193,8 @@ fn overlaps_section(r: &Report) -> Markup {
                     "overlap" @if remaining == 1 { "s" } " with this tolerance"
                 }
                 ", and count as one body where they meet; a table of them is at the end of the file."
-                @if let Some(tolerance) = f.start.suggested.filter(|_| !apart) {
-                    " Try a tolerance of " (short(tolerance)) " or, for curved fits, the chord errors of both parts together."
+                @if let Some(tolerance) = f.start.suggested_tolerance.filter(|_| !apart) {
+                    " Try a tolerance of " (short_number(tolerance)) " or, for curved fits, the chord errors of both parts together."
                 }
             }
         }
@@ -225,7 +230,7 @@ fn suggestion_texts(r: &Report) -> Vec<String> {
             .fit
             .tolerance
             .map(|t| format!("; a tolerance of {} removes the overlap", r.words.length_text(t)));
-        format!("{what} ({}){}", s.why, remedy.unwrap_or_default())
+        format!("{what} ({}){}", s.reason, remedy.unwrap_or_default())
     };
     sheet::pair_texts(r, all.into_iter().map(|s| (s.parts, s.fit.role, text(s))))
 }
@@ -235,7 +240,7 @@ fn map_section(map: &map::RemovalMap, name: &str) -> Markup {
     let title = format!("Free travel of {name} in all directions");
     html! {
         h3 { (title) }
-        figure { (picture_markup(map::svg(map, &title))) }
+        figure { (picture_markup(map::render_svg(map, &title))) }
         @match &map.cover {
             Ok(cover) => {
                 p {
@@ -249,15 +254,15 @@ fn map_section(map: &map::RemovalMap, name: &str) -> Markup {
         }
         @for region in map.regions.iter().take(8) {
             p {
-                "A free region of " (short(region.solid_angle)) " steradians around "
-                (arrow(region.center)) "."
+                "A free region of " (short_number(region.solid_angle)) " steradians around "
+                (direction_name(region.center)) "."
             }
         }
-        @for d in &map.isolated { p { "An isolated free direction: " (arrow(*d)) "." } }
+        @for d in &map.isolated { p { "An isolated free direction: " (direction_name(*d)) "." } }
     }
 }
 
 /// Formats a share as a percentage.
 fn percentage(share: f64) -> String {
-    format!("{} %", short(100.0 * share))
+    format!("{} %", short_number(100.0 * share))
 }

@@ -11,7 +11,7 @@ use super::sheet::step_list;
 use super::words::{sentence, time_text};
 use super::{Report, html_colour, picture_markup};
 use crate::Fit;
-use crate::plan::Stuck;
+use crate::plan::Interlocked;
 
 /// Width of the picture in pixels.
 const WIDTH: f64 = 860.0;
@@ -56,7 +56,7 @@ fn summary_text(r: &Report, kinds: usize) -> String {
                 words.length_text(largest)
             )
         }
-        Fit::Apart(length) => format!(" Minimum gap {}.", words.length_text(length)),
+        Fit::MinGap(length) => format!(" Minimum gap {}.", words.length_text(length)),
     };
     let seconds: f64 = r.seconds.iter().sum();
     let work = match r.f.plan.steps.len() {
@@ -69,31 +69,31 @@ fn summary_text(r: &Report, kinds: usize) -> String {
 
 /// Returns the reason of each interlocked group, a sentence for each.
 fn interlocking_reasons(r: &Report) -> String {
-    let reason = |stuck: &Stuck| {
+    let reason = |stuck: &Interlocked| {
         let parts = r.words.group_text(&stuck.parts);
-        format!("{parts}: {}", stuck.reason(r.f.bodies))
+        format!("{parts}: {}", stuck.reason_sentence(r.f.bodies))
     };
-    r.f.plan.stuck.iter().map(reason).collect::<Vec<_>>().join(" ")
+    r.f.plan.interlocked.iter().map(reason).collect::<Vec<_>>().join(" ")
 }
 
 /// Returns the result of the plan, and the number of overlapping pairs.
 fn result_section(r: &Report) -> Markup {
     let (plan, words) = (&r.f.plan, &r.words);
-    let whole = plan.left.is_empty() && plan.stuck.is_empty();
+    let whole = plan.remaining.is_empty() && plan.interlocked.is_empty();
     html! {
-        @if let Some(wanted) = &plan.wanted {
-            p.partly { "To remove " (wanted.words(r.f.bodies.assembly())) "." }
-        } @else if plan.steps.is_empty() && !plan.left.is_empty() {
+        @if let Some(wanted) = &plan.selection {
+            p.partly { "To remove " (wanted.describe(r.f.bodies.assembly())) "." }
+        } @else if plan.steps.is_empty() && !plan.remaining.is_empty() {
             p.warn { "No part can be removed. " (interlocking_reasons(r)) }
-        } @else if whole && !plan.last.is_empty() {
-            p.proof { "It can be taken apart completely. " (words.name_list(&plan.last)) " stays in place, all other parts are removed from it." }
+        } @else if whole && !plan.base.is_empty() {
+            p.proof { "It can be taken apart completely. " (words.name_list(&plan.base)) " stays in place, all other parts are removed from it." }
         } @else if !whole {
             p.warn { "It cannot be taken apart completely. " (interlocking_reasons(r)) }
         }
         @let remaining = r.f.start.remaining().count();
         @if remaining > 0 {
             p.warn {
-                @let apart = matches!(r.f.bodies.fit(), Fit::Apart(_));
+                @let apart = matches!(r.f.bodies.fit(), Fit::MinGap(_));
                 @match (apart, remaining) {
                     (true, 1) => { "One pair of parts is nearer to each other than the minimum gap" }
                     (true, pairs) => { (pairs) " pairs of parts are nearer to each other than the minimum gap" }
@@ -141,7 +141,7 @@ fn exploded_picture(r: &Report, kinds: &[Kind], title: &str) -> Markup {
 /// Returns the list of parts, grouped by shape, with sizes and steps.
 fn part_list(r: &Report, kinds: &[Kind]) -> Markup {
     let assembly = r.f.bodies.assembly();
-    let fixed = |kind: &Kind| kind.parts.iter().any(|&part| assembly.parts()[part].fixed());
+    let fixed = |kind: &Kind| kind.parts.iter().any(|&part| assembly.parts()[part].is_fixed());
     let class = if kinds.len() > ONE_COLUMN { "list columns" } else { "list" };
     let unit = match r.words.unit() {
         "" => String::new(),
@@ -159,7 +159,7 @@ fn part_list(r: &Report, kinds: &[Kind]) -> Markup {
                         " " (r.words.kind_name(&kind.parts))
                         @if fixed(kind) { " (fixed)" }
                     }
-                    span { (r.words.sides_text(assembly.parts()[kind.parts[0]].bounds().size())) }
+                    span { (r.words.sides_text(assembly.parts()[kind.parts[0]].bounds().side_lengths())) }
                     span { @if kind.steps.is_empty() { "stays" } @else { (step_list(&kind.steps)) } }
                 }
             }

@@ -11,7 +11,7 @@ use std::ops::Range;
 use colltrans::Aabb;
 use glam::{DMat3, DVec3};
 
-use super::{Findings, displacement_before_last_move, present_parts};
+use super::{Analysis, displacement_before_last_move, present_parts};
 use crate::matrix::direction_bits;
 use crate::plan::Step;
 
@@ -28,7 +28,7 @@ pub(super) struct Exploded {
 
 impl Exploded {
     /// Computes the displacements.
-    pub(super) fn new(f: &Findings) -> Self {
+    pub(super) fn new(f: &Analysis) -> Self {
         let Aabb { low, high } = f.bodies.assembly().bounds();
         let gap = GAP * (high - low).length();
         let mut by = vec![DVec3::ZERO; f.bodies.len()];
@@ -55,14 +55,14 @@ impl Exploded {
 }
 
 /// Returns the centre of the box of the parts of a step, at their places.
-fn step_center(f: &Findings, step: &Step) -> DVec3 {
+fn step_center(f: &Analysis, step: &Step) -> DVec3 {
     let boxes = step.parts.iter().map(|&part| f.bodies.bounds(part));
-    boxes.reduce(|a, b| a.join(&b)).map_or(DVec3::ZERO, |all| all.center())
+    boxes.reduce(|a, b| a.union(&b)).map_or(DVec3::ZERO, |all| all.center())
 }
 
 /// Boxes of all parts in frames of directions, with the direction as the third axis.
 struct Boxes<'a> {
-    f: &'a Findings<'a>,
+    f: &'a Analysis<'a>,
     known: HashMap<[u64; 3], (DMat3, Vec<Aabb>)>,
 }
 

@@ -8,7 +8,7 @@ use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
 use super::kinds;
-use crate::colour::linear;
+use crate::colour::srgb_to_linear;
 use crate::part::{Assembly, Part};
 use crate::plan::{Leg, Plan};
 use crate::units;
@@ -29,16 +29,16 @@ const MIN_PARKED_DISTANCE: f64 = 0.35;
 const MAX_PARKING_STEPS: usize = 200;
 
 /// Returns the bytes of the file.
-pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
+pub fn plan_animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
     let mut file = File::default();
     let Aabb { low, high } = assembly.bounds();
     let size = (high - low).length();
     // Lengths in an unknown unit are written unchanged.
-    let per_unit = assembly.unit().and_then(units::metres).unwrap_or(1.0);
+    let per_unit = assembly.unit().and_then(units::unit_in_metres).unwrap_or(1.0);
     let mut nodes = Vec::new();
     let colours = kinds::part_colours(plan, assembly.parts());
     for (part, colour) in assembly.parts().iter().zip(colours) {
-        let mesh = file.add_mesh(part, colour.map(linear));
+        let mesh = file.add_mesh(part, colour.map(srgb_to_linear));
         nodes.push(json!({ "name": part.name(), "mesh": mesh }));
     }
     let (channels, samplers) = animation_channels(&mut file, assembly, plan, size);
@@ -84,7 +84,7 @@ fn animation_channels(
         let mut time = 0.0;
         for (k, step) in plan.steps.iter().enumerate() {
             time += PAUSE;
-            for (leg, motion) in step.shown(parked[k]) {
+            for (leg, motion) in step.displayed_legs(parked[k]) {
                 let seconds =
                     leg.turn.as_ref().map_or(STEP, |turn| STEP.max(TURN * turn.turns.abs()));
                 if leg.parts.contains(&part) {
@@ -97,9 +97,10 @@ fn animation_channels(
                     for share in (1..=shares as usize).map(|n| n as f64 / shares) {
                         (at, turned) = match &leg.turn {
                             None => (before.0 + motion, before.1),
-                            Some(turn) => {
-                                (leg.moved(before.0, share), turn.rotation(leg, share) * before.1)
-                            }
+                            Some(turn) => (
+                                leg.move_point(before.0, share),
+                                turn.rotation_at(leg, share) * before.1,
+                            ),
                         };
                         keys.push((time + share * seconds, at, turned));
                     }
@@ -138,7 +139,8 @@ fn parked_distances(assembly: &Assembly, plan: &Plan, size: f64) -> Vec<f64> {
     for (k, step) in plan.steps.iter().enumerate().rev() {
         distances[k] = MIN_PARKED_DISTANCE * size;
         let boxes = step.parts.iter().map(|&p| assembly.parts()[p].bounds());
-        let Some(group) = boxes.reduce(|a, b| a.join(&b)).filter(|_| step.within.is_none()) else {
+        let Some(group) = boxes.reduce(|a, b| a.union(&b)).filter(|_| step.group_step.is_none())
+        else {
             continue;
         };
         // End position of the group's first part. The others end there too, apart from moves back.
@@ -150,8 +152,8 @@ fn parked_distances(assembly: &Assembly, plan: &Plan, size: f64) -> Vec<f64> {
             Aabb { low: group.low + by, high: group.high + by }
         };
         for _ in 0..MAX_PARKING_STEPS {
-            let wide = at(distances[k]).grown(0.02 * size);
-            if !taken.iter().any(|other| other.meets(&wide)) {
+            let wide = at(distances[k]).expanded(0.02 * size);
+            if !taken.iter().any(|other| other.intersects(&wide)) {
                 break;
             }
             distances[k] += 0.1 * size;

@@ -1,12 +1,13 @@
-//! Directional blocking graphs as SVG. Parts are on a ring, from top to bottom on both sides. An arrow leads
-//! from each part to the parts that it meets. Groups of several parts that move as one are marked in red.
+//! Directional blocking graphs as SVG. Parts are on a ring, clockwise from the top. An arrow leads from each part to
+//! the parts that it meets. Groups of several parts that move as one are marked in red. Removable parts are filled in
+//! orange.
 
 use std::fmt::Write;
 
 use glam::DVec2;
 
-use super::escaped;
-use crate::blocking::Blocking;
+use super::escape_xml;
+use crate::blocking::BlockingGraph;
 use crate::bodies::Bodies;
 
 /// Radius of the ring in pixels.
@@ -15,7 +16,7 @@ const RADIUS: f64 = 175.0;
 const MIDDLE: DVec2 = DVec2::new(280.0, 200.0);
 
 /// Draws the blocking graph of all parts along one direction.
-pub fn svg(bodies: &Bodies, graph: &Blocking) -> String {
+pub fn blocking_graph_svg(bodies: &Bodies, graph: &BlockingGraph) -> String {
     let n = bodies.len();
     // Equal vertical distances keep the names apart.
     let at = |k: usize| {
@@ -29,16 +30,16 @@ pub fn svg(bodies: &Bodies, graph: &Blocking) -> String {
          font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"560\" height=\"400\" \
          fill=\"#fff\"/>\n",
     );
-    let groups = graph.groups();
+    let groups = graph.strong_components();
     let mut group_of = vec![usize::MAX; n];
     for (k, group) in groups.iter().enumerate().filter(|(_, g)| g.len() > 1) {
         for &part in group {
             group_of[part] = k;
         }
     }
-    let free: Vec<usize> = graph.removable().concat();
+    let free: Vec<usize> = graph.removable_groups().concat();
     for a in 0..n {
-        for b in graph.blockers(a) {
+        for b in graph.direct_blockers(a) {
             let (p, q) = (at(a), at(b));
             let along = (q - p).normalize_or_zero();
             let (p, q) = (p + along * 6.0, q - along * 7.0);
@@ -76,6 +77,6 @@ fn draw_node(text: &mut String, at: DVec2, name: &str, free: bool, group: usize)
         at.x,
         at.y,
         at.y + 4.0,
-        escaped(name)
+        escape_xml(name)
     );
 }

@@ -9,16 +9,16 @@ use std::ops::Range;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
 
-use super::{Findings, Report, after, cover, sheet, tables, viewer};
+use super::{Analysis, Report, after, cover, sheet, tables, viewer};
 
 /// Style sheet of the report.
 const STYLE: &str = include_str!("../../assets/report.css");
 
 /// Returns the report as an HTML document.
-pub fn page(f: &Findings, title: &str) -> String {
+pub fn report_page(f: &Analysis, title: &str) -> String {
     let r = Report::new(f);
     let stages = f.plan.stages();
-    let repeats = f.plan.repeats(&stages);
+    let repeats = f.plan.repeated_stages(&stages);
     let mut drawn: Vec<Vec<&Range<usize>>> = Vec::new();
     for (run, times) in &repeats {
         for k in run.clone() {

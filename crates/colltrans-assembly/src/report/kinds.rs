@@ -22,7 +22,7 @@ pub(super) fn kinds(plan: &Plan, parts: usize) -> Vec<Kind> {
     }
     let mut by_first = BTreeMap::<usize, Vec<usize>>::new();
     for part in 0..parts {
-        let first = plan.likes.get(part).copied().unwrap_or(part);
+        let first = plan.first_identical.get(part).copied().unwrap_or(part);
         by_first.entry(first).or_default().push(part);
     }
     let kind = |parts: Vec<usize>| {

@@ -1,7 +1,7 @@
 //! Edges of a part that a picture may show, found once for all of its pictures.
 
 use colltrans::Solid;
-use colltrans_picture::{SMOOTH, edges};
+use colltrans_picture::{SMOOTH_COSINE, edges};
 use glam::DVec3;
 
 /// Minimum cosine of the normals of coplanar facets, whose common edge no view shows.
@@ -46,7 +46,7 @@ impl Lines {
             let Some(faces) = line.faces else { return true };
             let [m, n] = faces.map(|face| facet_normal(solid, face));
             let [x, y] = [m, n].map(|n| n.dot(toward) > 0.0);
-            (x || y) && (n.dot(m) < SMOOTH || x != y)
+            (x || y) && (n.dot(m) < SMOOTH_COSINE || x != y)
         };
         let corner = |v: u32| solid.vertices()[v as usize];
         self.0.iter().filter(drawn).map(|line| line.ends.map(corner)).collect()

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::lines::Lines;
-use super::{Findings, html_colour, kinds};
+use super::{Analysis, html_colour, kinds};
 use crate::part::Part;
 
 /// Style in which a part is drawn.
@@ -153,7 +153,7 @@ impl Projection {
 
 impl<'a> Studio<'a> {
     /// Finds the drawable edges and the colours of all parts.
-    pub(super) fn new(f: &Findings<'a>) -> Self {
+    pub(super) fn new(f: &Analysis<'a>) -> Self {
         let parts = f.bodies.assembly().parts();
         let lines = parts.par_iter().map(|part| Lines::new(part.solid())).collect();
         Self { parts, lines, colours: kinds::part_colours(&f.plan, parts), up: f.up }
@@ -172,7 +172,7 @@ impl<'a> Studio<'a> {
             let (sin_a, cos_a) = f64::to_radians(azimuth).sin_cos();
             let (sin_h, cos_h) = f64::to_radians(height).sin_cos();
             let toward = turn * DVec3::new(cos_h * cos_a, cos_h * sin_a, sin_h);
-            Viewpoint { view: View::upright(toward, up), name }
+            Viewpoint { view: View::looking_along(toward, up), name }
         })
     }
 
@@ -322,7 +322,7 @@ impl<'a> Studio<'a> {
                 tone,
             );
         }
-        glass.keep_before(&raster);
+        glass.keep_in_front_of(&raster);
         let mut page = Page::new(window);
         let traces = scene.traces.iter().map(|ends| ends.map(|p| projection.project(p)));
         let seen = traces.flat_map(|line| raster.split(line, DEPTH_TOLERANCE)[0].clone());

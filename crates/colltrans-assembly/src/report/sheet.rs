@@ -11,8 +11,8 @@ use super::scene::{Arrow, Look, Scene, Shown, Viewpoint};
 use super::words::{number_runs, time_text};
 use super::{Report, picture_markup, present_parts};
 use crate::Fit;
-use crate::likes::pairs_alike;
-use crate::plan::Passed;
+use crate::identical::group_identical_pairs;
+use crate::plan::ToleratedContact;
 use crate::plan::{Leg, Step};
 
 /// Size of the picture of a stage in pixels.
@@ -39,7 +39,7 @@ pub(super) fn step_page(r: &Report, repeats: &[&Range<usize>]) -> Markup {
     html! {
         section.sheet.step id=(format!("step-{}", stage.start + 1)) {
             h2 { (head) " " (number_runs(&all)) ": take out " (taken_parts_text(r, stage)) }
-            @if let Some(within) = steps[0].within {
+            @if let Some(within) = steps[0].group_step {
                 p.soft { "On the bench, from what step " (within + 1) " took out: " (r.words.group_text(&r.f.plan.steps[within].parts)) "." }
             }
             @if steps[0].path.len() > 1 { (move_pictures(r, stage.start)) } @else { (stage_picture(r, stage)) }
@@ -75,7 +75,7 @@ pub(super) fn taken_parts_text(r: &Report, stage: &Range<usize>) -> String {
     let steps = &r.f.plan.steps[stage.clone()];
     match steps {
         [step] => {
-            let named = r.f.bodies.assembly().constraints().name(&step.parts).is_some();
+            let named = r.f.bodies.assembly().constraints().group_name(&step.parts).is_some();
             let as_one = if named || step.parts.len() == 1 { "" } else { ", as one" };
             r.words.group_text(&step.parts) + as_one
         }
@@ -92,7 +92,7 @@ fn moved_parts(steps: &[Step]) -> Vec<usize> {
 /// their directions.
 fn stage_picture(r: &Report, stage: &Range<usize>) -> Markup {
     let steps = &r.f.plan.steps[stage.clone()];
-    let travel = r.f.plan.travel(stage);
+    let travel = r.f.plan.stage_travel(stage);
     let out = drawn_travel(r, travel);
     let moving = moved_parts(steps);
     let by = |part: usize| {
@@ -112,7 +112,7 @@ fn stage_picture(r: &Report, stage: &Range<usize>) -> Markup {
         label: format!(
             "{} moves {}; moving parts in colour, other parts pale",
             taken_parts_text(r, stage),
-            match r.f.plan.direction(stage) {
+            match r.f.plan.stage_direction(stage) {
                 Some(_) => r.words.move_text(&steps[0].path[0]),
                 None => direction_text(r, stage, 1.0),
             }
@@ -170,9 +170,9 @@ fn move_pictures(r: &Report, at: usize) -> Markup {
         @if step.path.len() > MAX_FRAMES {
             ol start=(MAX_FRAMES + 1) { @for leg in &step.path[MAX_FRAMES..] { (leg_item(r, leg)) } }
         }
-        @if !step.back.is_empty() {
+        @if !step.return_legs.is_empty() {
             p { "Then back to its place:" }
-            ol { @for leg in &step.back { (leg_item(r, leg)) } }
+            ol { @for leg in &step.return_legs { (leg_item(r, leg)) } }
         }
     }
 }
@@ -222,7 +222,7 @@ fn shown_parts(
 /// Returns an arrow from the middle of the moving parts to a point beyond their drawn position.
 fn move_arrow(r: &Report, parts: &[usize], before: DVec3, out: DVec3) -> Arrow {
     let boxes = parts.iter().map(|&part| r.f.bodies.bounds(part));
-    let Aabb { low, high } = boxes.reduce(|a, b| a.join(&b)).expect("something moves");
+    let Aabb { low, high } = boxes.reduce(|a, b| a.union(&b)).expect("something moves");
     let from = low.midpoint(high) + before;
     let beyond = out.normalize_or_zero() * 0.1 * r.diagonal;
     Arrow { from, to: from + out + beyond, label: String::new() }
@@ -232,7 +232,8 @@ fn move_arrow(r: &Report, parts: &[usize], before: DVec3, out: DVec3) -> Arrow {
 fn stage_facts(r: &Report, stage: &Range<usize>) -> Markup {
     let steps = &r.f.plan.steps[stage.clone()];
     let step = &steps[0];
-    let after: Vec<usize> = steps.iter().flat_map(|step| step.after.iter().copied()).collect();
+    let after: Vec<usize> =
+        steps.iter().flat_map(|step| step.predecessors.iter().copied()).collect();
     let rounds: Vec<usize> = stage.clone().map(|k| r.rounds[k]).collect();
     html! {
         dl.facts {
@@ -243,7 +244,7 @@ fn stage_facts(r: &Report, stage: &Range<usize>) -> Markup {
                     dd { (travel_text(r, steps).unwrap_or_else(|| "nothing in the way: just take it off".into())) }
                 }
             } @else {
-                div { dt { "Moves" } dd { (step.path.len()) @if !step.back.is_empty() { ", and " (step.back.len()) " back" } } }
+                div { dt { "Moves" } dd { (step.path.len()) @if !step.return_legs.is_empty() { ", and " (step.return_legs.len()) " back" } } }
             }
             div { dt { "Needs" } dd { @if after.is_empty() { "no earlier step" } @else { (step_list(&after)) } } }
             div { dt { "Round" } dd { (number_runs(&rounds)) " of " (r.rounds.iter().max().map_or(0, |k| k + 1)) } }
@@ -254,7 +255,7 @@ fn stage_facts(r: &Report, stage: &Range<usize>) -> Markup {
 
 /// Describes the direction of a stage, multiplied by `sign`.
 pub(super) fn direction_text(r: &Report, stage: &Range<usize>, sign: f64) -> String {
-    match r.f.plan.direction(stage) {
+    match r.f.plan.stage_direction(stage) {
         Some(d) => r.words.direction_text(d * sign + DVec3::ZERO),
         None => "each along its own path, as drawn".into(),
     }
@@ -280,7 +281,7 @@ pub(super) fn step_list(steps: &[usize]) -> String {
 
 /// Returns warnings about parts that fall or may tip over after the steps.
 fn stability_warnings(r: &Report, steps: &[Step]) -> Markup {
-    let falls: Vec<usize> = steps.iter().flat_map(|step| step.falls.iter().copied()).collect();
+    let falls: Vec<usize> = steps.iter().flat_map(|step| step.falling.iter().copied()).collect();
     let tips: Vec<usize> = steps.iter().flat_map(|step| step.off_balance.iter().copied()).collect();
     html! {
         @if !falls.is_empty() {
@@ -304,7 +305,8 @@ fn proof_section(r: &Report, steps: &[Step]) -> Markup {
     surfaces.sort_unstable();
     surfaces.dedup();
     let ignored: Vec<[usize; 2]> = steps.iter().flat_map(|s| s.ignored.iter().copied()).collect();
-    let passed: Vec<Passed> = steps.iter().flat_map(|step| step.passed.iter().copied()).collect();
+    let passed: Vec<ToleratedContact> =
+        steps.iter().flat_map(|step| step.tolerated.iter().copied()).collect();
     let passed = passed_texts(r, &passed);
     let turns = steps.iter().flat_map(|step| &step.path).filter_map(|leg| leg.turn.as_ref());
     let unproven: BTreeSet<&String> =
@@ -345,7 +347,7 @@ fn proof_section(r: &Report, steps: &[Step]) -> Markup {
                         li {
                             b { "Not checked, as requested: " }
                             "overlaps at the start of "
-                            (pair_list(&ignored, |pair| f.bodies.assembly().names(pair).join(" and "))) "."
+                            (pair_list(&ignored, |pair| f.bodies.assembly().part_names(pair).join(" and "))) "."
                         }
                     }
                 }
@@ -372,15 +374,15 @@ fn fit_text(r: &Report) -> String {
                 r.words.length_text(largest)
             )
         }
-        Fit::Apart(length) => {
+        Fit::MinGap(length) => {
             format!(", and keeps a gap of {} to all others", r.words.length_text(length))
         }
     }
 }
 
 /// Describes the tolerated contacts of pairs with a fit of their own, equal pairs together.
-pub(super) fn passed_texts(r: &Report, all: &[Passed]) -> Vec<String> {
-    let text = |passed: &Passed| passed.tolerated.words(passed.role);
+pub(super) fn passed_texts(r: &Report, all: &[ToleratedContact]) -> Vec<String> {
+    let text = |passed: &ToleratedContact| passed.tolerated.describe(passed.role);
     pair_texts(r, all.iter().map(|passed| (passed.parts, text(passed), text(passed))))
 }
 
@@ -394,7 +396,7 @@ pub(super) fn pair_texts<K: Ord>(
         let [a, b] = sides.map(|side| r.words.count_text(&side));
         format!("{a} and {b}: {description}")
     };
-    pairs_alike(&r.f.plan.likes, all).into_iter().map(text).collect()
+    group_identical_pairs(&r.f.plan.first_identical, all).into_iter().map(text).collect()
 }
 
 /// Joins the descriptions of pairs; beyond [`MAX_PAIRS`], states the number of further pairs.

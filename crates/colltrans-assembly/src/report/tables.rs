@@ -2,11 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::{Findings, arrow, graph, picture_markup, short};
-use crate::blocking::Blocking;
+use super::{Analysis, direction_name, graph, picture_markup, short_number};
+use crate::blocking::BlockingGraph;
 use crate::bodies::Fit;
 use crate::part::Part;
-use crate::rooms::PartRoom;
+use crate::travel::PartTravel;
 
 /// Maximum number of rows. The JSON file contains all.
 const MAX_ROWS: usize = 200;
@@ -14,7 +14,7 @@ const MAX_ROWS: usize = 200;
 const MAX_GRAPHS: usize = 6;
 
 /// Returns all tables.
-pub(super) fn all_tables(f: &Findings) -> Markup {
+pub(super) fn all_tables(f: &Analysis) -> Markup {
     let contents = [
         ("All parts", parts_table(f)),
         ("Parts that overlap as drawn, or with this fit", overlaps_table(f)),
@@ -30,7 +30,7 @@ pub(super) fn all_tables(f: &Findings) -> Markup {
 }
 
 /// Returns the table of overlapping pairs.
-fn overlaps_table(f: &Findings) -> Markup {
+fn overlaps_table(f: &Analysis) -> Markup {
     let name = |k: usize| f.bodies.assembly().parts()[k].name();
     html! {
         @if f.start.overlaps.is_empty() {
@@ -42,8 +42,8 @@ fn overlaps_table(f: &Findings) -> Markup {
                     @for o in f.start.overlaps.iter().take(MAX_ROWS) {
                         tr {
                             td { (name(o.parts[0])) ", " (name(o.parts[1])) }
-                            td.n { (o.depth.map_or("more than their size".into(), short)) }
-                            td { (match (o.remains, f.bodies.fit()) { (false, _) => "do not", (_, Fit::Apart(_)) => "too near", _ => "overlap" }) }
+                            td.n { (o.depth.map_or("more than their size".into(), short_number)) }
+                            td { (match (o.remains_with_fit, f.bodies.fit()) { (false, _) => "do not", (_, Fit::MinGap(_)) => "too near", _ => "overlap" }) }
                         }
                     }
                 }
@@ -58,26 +58,26 @@ fn without_rounding(x: f64, size: f64) -> f64 {
 }
 
 /// Returns the table of free travels by part and direction.
-fn free_travel_table(f: &Findings) -> Markup {
-    let size = f.bodies.assembly().extent();
+fn free_travel_table(f: &Analysis) -> Markup {
+    let size = f.bodies.assembly().largest_side();
     let name = |k: usize| f.bodies.assembly().parts()[k].name();
     let directions = f.matrix.directions();
-    let cell = |room: &PartRoom| match room {
-        PartRoom::Free => "free".into(),
-        PartRoom::Overlapping { by, .. } => format!("overlaps {}", name(*by)),
-        PartRoom::Blocked { by, stop, .. } => {
-            format!("{} {}", short(without_rounding(stop.distance(), size)), name(*by))
+    let cell = |room: &PartTravel| match room {
+        PartTravel::Free => "free".into(),
+        PartTravel::Overlapping { by, .. } => format!("overlaps {}", name(*by)),
+        PartTravel::Blocked { by, stop, .. } => {
+            format!("{} {}", short_number(without_rounding(stop.distance(), size)), name(*by))
         }
     };
     html! {
         div.wide {
             table {
-                tr { th { "part" } @for d in directions { th { (arrow(*d)) } } }
+                tr { th { "part" } @for d in directions { th { (direction_name(*d)) } } }
                 @for part in 0..f.bodies.len().min(MAX_ROWS) {
                     tr {
                         th { (name(part)) }
-                        @for room in (0..directions.len()).map(|k| f.matrix.room(k, part)) {
-                            td class=(room.outcome()) { (cell(&room)) }
+                        @for room in (0..directions.len()).map(|k| f.matrix.travel_of_part(k, part)) {
+                            td class=(room.outcome_name()) { (cell(&room)) }
                         }
                     }
                 }
@@ -87,14 +87,15 @@ fn free_travel_table(f: &Findings) -> Markup {
 }
 
 /// Returns the blocking graphs of the first directions; empty for large assemblies.
-fn blocking_graphs(f: &Findings) -> Markup {
+fn blocking_graphs(f: &Analysis) -> Markup {
     let most = 60;
     if f.bodies.is_empty() || f.bodies.len() > most {
         return Markup::default();
     }
     let all = vec![true; f.bodies.len()];
-    let graph = |k: usize| graph::svg(f.bodies, &Blocking::new(&f.matrix, k, &all));
-    let origin = |k: usize| f.candidates.main.get(k).map_or("", |c| c.origin.name());
+    let graph =
+        |k: usize| graph::blocking_graph_svg(f.bodies, &BlockingGraph::new(&f.matrix, k, &all));
+    let origin = |k: usize| f.candidates.main.get(k).map_or("", |c| c.source.name());
     html! {
         p {
             "Arrows point from a part to each part that it meets. Orange: can be removed, alone or with \
@@ -104,7 +105,7 @@ fn blocking_graphs(f: &Findings) -> Markup {
             @for (k, d) in f.matrix.directions().iter().enumerate().take(MAX_GRAPHS) {
                 figure {
                     (picture_markup(graph(k)))
-                    figcaption { (arrow(*d)) " (" (origin(k)) ")" }
+                    figcaption { (direction_name(*d)) " (" (origin(k)) ")" }
                 }
             }
         }
@@ -112,9 +113,9 @@ fn blocking_graphs(f: &Findings) -> Markup {
 }
 
 /// Returns the table of contacts with their areas and centres.
-fn contacts_table(f: &Findings) -> Markup {
+fn contacts_table(f: &Analysis) -> Markup {
     let name = |k: usize| f.bodies.assembly().parts()[k].name();
-    let size = f.bodies.assembly().size();
+    let size = f.bodies.assembly().coordinate_size();
     html! {
         @if f.liaisons.is_empty() {
             p { "None." }
@@ -124,8 +125,8 @@ fn contacts_table(f: &Findings) -> Markup {
                 @for l in f.liaisons.iter().take(MAX_ROWS) {
                     tr {
                         td { (name(l.parts[0])) ", " (name(l.parts[1])) }
-                        td.n { (short(l.area())) }
-                        td { (l.center().to_array().map(|x| short(without_rounding(x, size))).join(", ")) }
+                        td.n { (short_number(l.area())) }
+                        td { (l.centroid().to_array().map(|x| short_number(without_rounding(x, size))).join(", ")) }
                     }
                 }
             } }
@@ -134,11 +135,11 @@ fn contacts_table(f: &Findings) -> Markup {
 }
 
 /// Returns the table of parts with their facets, volumes and remarks.
-fn parts_table(f: &Findings) -> Markup {
+fn parts_table(f: &Analysis) -> Markup {
     let remarks = |k: usize, p: &Part| {
-        let fixed = p.fixed().then(|| "fixed".to_owned());
+        let fixed = p.is_fixed().then(|| "fixed".to_owned());
         let all: Vec<String> =
-            p.defects().iter().cloned().chain(f.bodies.remark(k)).chain(fixed).collect();
+            p.defects().iter().cloned().chain(f.bodies.shrink_defects(k)).chain(fixed).collect();
         all.join("; ")
     };
     html! {
@@ -147,8 +148,8 @@ fn parts_table(f: &Findings) -> Markup {
             @for (k, p) in f.bodies.assembly().parts().iter().enumerate().take(MAX_ROWS) {
                 tr {
                     td { (p.name()) }
-                    td.n { (p.facets()) }
-                    td.n { (short(p.solid().volume())) }
+                    td.n { (p.facet_count()) }
+                    td.n { (short_number(p.solid().volume())) }
                     td { (remarks(k, p)) }
                 }
             }

@@ -10,7 +10,7 @@ use glam::DVec3;
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
-use super::{Findings, arrow, kinds};
+use super::{Analysis, direction_name, kinds};
 use crate::part::Part;
 
 /// Script of the viewer.
@@ -19,12 +19,12 @@ const SCRIPT: &str = include_str!("../../assets/viewer.js");
 const MAX_TRIANGLES: usize = 400_000;
 
 /// Returns the viewer, or a reference to the animation for large assemblies; empty without parts.
-pub(super) fn viewer_section(f: &Findings) -> Markup {
+pub(super) fn viewer_section(f: &Analysis) -> Markup {
     let parts = f.bodies.assembly().parts();
     if parts.is_empty() {
         return Markup::default();
     }
-    let triangles: usize = parts.iter().map(Part::facets).sum();
+    let triangles: usize = parts.iter().map(Part::facet_count).sum();
     if triangles > MAX_TRIANGLES {
         return html! {
             p {
@@ -47,7 +47,7 @@ fn script_data(data: &Value) -> PreEscaped<String> {
 }
 
 /// Returns the data of the viewer: size, unit, parts and steps.
-fn viewer_data(f: &Findings) -> Value {
+fn viewer_data(f: &Analysis) -> Value {
     let assembly = f.bodies.assembly();
     let Aabb { low, high } = assembly.bounds();
     let (middle, size) = ((low + high) / 2.0, (high - low).length());
@@ -57,13 +57,13 @@ fn viewer_data(f: &Findings) -> Value {
     let parts: Vec<Value> = parts.collect();
     let steps = f.plan.steps.iter().map(|step| {
         let legs = step
-            .shown(0.35 * size)
+            .displayed_legs(0.35 * size)
             .map(|(leg, motion)| json!({ "parts": leg.parts, "way": motion.to_array() }));
         json!({
             "parts": step.parts,
             "legs": legs.collect::<Vec<_>>(),
             "moves": step.path.len(),
-            "along": arrow(step.direction),
+            "along": direction_name(step.direction),
             "travel": step.travel.value,
         })
     });
@@ -86,7 +86,7 @@ fn part_data(part: &Part, colour: [f64; 3], middle: DVec3) -> Value {
     json!({
         "name": part.name(),
         "colour": colour,
-        "fixed": part.fixed(),
+        "fixed": part.is_fixed(),
         "vertices": STANDARD.encode(vertices),
         "triangles": STANDARD.encode(triangles),
     })

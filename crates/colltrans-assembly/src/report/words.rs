@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Findings, arrow, digits, short};
-use crate::likes::common_name;
+use super::{Analysis, direction_name, rounded_number, short_number};
+use crate::identical::common_name;
 use crate::part::Assembly;
 use crate::plan::Leg;
 use crate::{Fit, units};
@@ -34,18 +34,18 @@ pub(super) struct Words<'a> {
 
 impl<'a> Words<'a> {
     /// Selects the unit. Assemblies in metres that are smaller than 2 m are described in millimetres.
-    pub(super) fn new(f: &Findings<'a>) -> Self {
+    pub(super) fn new(f: &Analysis<'a>) -> Self {
         let assembly = f.bodies.assembly();
         let unit = assembly.unit().unwrap_or_default();
         // Machines that fit on a bench are measured in millimetres.
-        let small = units::metres(unit) == Some(1.0) && assembly.size() < 2.0;
+        let small = units::unit_in_metres(unit) == Some(1.0) && assembly.coordinate_size() < 2.0;
         let (factor, unit) = if small { (1e3, "mm") } else { (1.0, unit) };
         Self { assembly, up: f.up, factor, unit }
     }
 
     /// Formats a length with its unit.
     pub(super) fn length_text(&self, x: f64) -> String {
-        self.with_unit(short(x * self.factor))
+        self.with_unit(short_number(x * self.factor))
     }
 
     /// Appends the unit, if it is known.
@@ -63,7 +63,7 @@ impl<'a> Words<'a> {
     pub(super) fn sides_text(&self, size: DVec3) -> String {
         let least = MIN_SIDE * size.max_element();
         let side = |x: f64| if x < least { 0.0 } else { x * self.factor };
-        size.to_array().map(|x| digits(side(x), 3)).join(" × ")
+        size.to_array().map(|x| rounded_number(side(x), 3)).join(" × ")
     }
 
     /// Returns the unit of lengths; empty if it is unknown.
@@ -82,10 +82,10 @@ impl<'a> Words<'a> {
         }
         let axis = nearest_axis(d);
         if off(axis) < SAME_DIRECTION {
-            return format!("along {}", arrow(axis));
+            return format!("along {}", direction_name(axis));
         }
-        let by = digits(off(axis).to_degrees(), 2);
-        format!("{by}° off {} {}", arrow(axis), arrow(d).replace('-', "−"))
+        let by = rounded_number(off(axis).to_degrees(), 2);
+        format!("{by}° off {} {}", direction_name(axis), direction_name(d).replace('-', "−"))
     }
 
     /// Describes a move with its travel and its rotation.
@@ -111,14 +111,14 @@ impl<'a> Words<'a> {
 
     /// Lists names, at most the first ones.
     pub(super) fn name_list(&self, parts: &[usize]) -> String {
-        joined_names(&self.assembly.names(parts), MAX_NAMES)
+        joined_names(&self.assembly.part_names(parts), MAX_NAMES)
     }
 
     /// Describes parts that move as one: the name of the subassembly, the names of few parts, or the largest
     /// part and the number of others.
     pub(super) fn group_text(&self, parts: &[usize]) -> String {
-        let names = self.assembly.names(parts);
-        if let Some(name) = self.assembly.constraints().name(parts) {
+        let names = self.assembly.part_names(parts);
+        if let Some(name) = self.assembly.constraints().group_name(parts) {
             return name.to_owned();
         }
         match &names[..] {
@@ -126,7 +126,8 @@ impl<'a> Words<'a> {
                 format!("{} and {last}", all.join(", "))
             }
             [_, _, ..] => {
-                let size = |&&part: &&usize| self.assembly.parts()[part].bounds().size().length();
+                let size =
+                    |&&part: &&usize| self.assembly.parts()[part].bounds().side_lengths().length();
                 let largest = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
                 let name = largest.map_or("", |&part| self.assembly.parts()[part].name());
                 format!("{name} with {} others", names.len() - 1)
@@ -137,7 +138,7 @@ impl<'a> Words<'a> {
 
     /// Returns the names, without numbers, of parts of equal shape.
     pub(super) fn kind_name(&self, parts: &[usize]) -> String {
-        let names = self.assembly.names(parts);
+        let names = self.assembly.part_names(parts);
         if let [name] = &names[..] {
             return (*name).to_owned();
         }
@@ -182,7 +183,7 @@ fn nearest_axis(d: DVec3) -> DVec3 {
 /// Formats a direction, as an axis if it is nearly parallel to one.
 fn axis_name(d: DVec3) -> String {
     let axis = nearest_axis(d);
-    arrow(if angle(d, axis) < SAME_DIRECTION { axis } else { d })
+    direction_name(if angle(d, axis) < SAME_DIRECTION { axis } else { d })
 }
 
 /// Formats indices as numbers from 1 on, merged into runs: "1–8, 17". More than [`MAX_RUNS`] runs are
@@ -219,7 +220,7 @@ pub(super) fn sentence(note: &str) -> String {
 /// Formats a time in seconds, or in minutes from 120 s on.
 pub(super) fn time_text(seconds: f64) -> String {
     if seconds < 120.0 {
-        return format!("{} s", short(seconds));
+        return format!("{} s", short_number(seconds));
     }
     let whole = seconds.round();
     let (minutes, rest) = (whole.div_euclid(60.0), whole.rem_euclid(60.0));

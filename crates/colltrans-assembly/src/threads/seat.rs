@@ -16,7 +16,7 @@ use super::surface::AxisFrame;
 use super::{
     CREST_MARGIN, MAX_CREST_RATIO, Thread, axial_projection, common_range, lateral_vector,
 };
-use crate::boxes::span;
+use crate::boxes::value_range;
 
 /// Number of cells of a profile.
 const CELLS: usize = 128;
@@ -30,7 +30,7 @@ const MAX_PLAIN_HEIGHT: f64 = 0.25;
 #[non_exhaustive]
 pub struct Seat {
     /// Displacement of the screw, perpendicular to the axis.
-    pub aside: DVec3,
+    pub lateral_offset: DVec3,
     /// Rotation of the screw about the axis in turns, from -0.5 to 0.5. It is 0 if no rotation is better.
     pub phase: f64,
     /// Radial overlap of the profiles in this position; negative for a clearance.
@@ -38,7 +38,7 @@ pub struct Seat {
     /// Whether the hole has a thread.
     pub threaded: bool,
     /// Travels of the screw along the axis and against it until its thread is out of the hole.
-    pub ways: [f64; 2],
+    pub exit_travels: [f64; 2],
 }
 
 impl Thread {
@@ -63,20 +63,20 @@ impl Thread {
         let outer = crest * (1.0 + CREST_MARGIN);
         let screw = median_profile(own, &about(middle), pitch, outer, f64::max)?;
         let wall = median_profile(other, &about(center), pitch, 2.0 * crest, f64::min)?;
-        let [least, most] = span(wall.iter().copied());
+        let [least, most] = value_range(wall.iter().copied());
         let (phase, overlap) = best_phase(&screw, &wall, EQUAL * depth);
         let [low, high] = hole_ends(other, axis, center, crest);
         let threaded = own.vertices().iter().filter(|p| {
             let r = flat(**p).distance(middle);
             r > hole && r <= outer
         });
-        let [bottom, top] = span(threaded.map(|p| p.dot(axis)));
+        let [bottom, top] = value_range(threaded.map(|p| p.dot(axis)));
         Some(Seat {
-            aside,
+            lateral_offset: aside,
             phase,
             overlap,
             threaded: most - least >= MAX_PLAIN_HEIGHT * depth,
-            ways: [high - bottom, top - low].map(|travel| travel.max(0.0)),
+            exit_travels: [high - bottom, top - low].map(|travel| travel.max(0.0)),
         })
     }
 }

@@ -105,9 +105,9 @@ impl AxisFrame {
         Self { range: [low + less, high - less], ..*self }
     }
 
-    /// Returns the centre, in projection, of a screw or a hole over whole turns: the point about which the
-    /// selected radii are equal on all sides. From a point that is off by `e`, the radius in direction `u` is
-    /// larger by `e . u`.
+    /// Returns the projected centre of a screw or a hole: the point about which the radii that `outermost`
+    /// selects are equal on all sides. The range should span whole turns. If the centre is at `e` from a point, the
+    /// radius about that point in direction `u` is larger by about `e . u`. The centre is corrected [`ROUNDS`] times.
     pub(super) fn fitted_center(
         mut self,
         solid: &Solid,

@@ -3,11 +3,11 @@
 use crate::common::*;
 use colltrans::Solid;
 use colltrans::solid::StartOverlap;
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
-use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::candidates::{CandidateOptions, find_candidates};
+use colltrans_assembly::liaisons::find_liaisons;
+use colltrans_assembly::matrix::ContactMatrix;
 use colltrans_assembly::plan::{PlanOptions, disassemble};
-use colltrans_assembly::rooms::{PartRoom, rooms};
+use colltrans_assembly::travel::{PartTravel, travels_of_parts};
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
 use colltrans_testkit::oracle::exact::{Dyadic, Vector};
 use colltrans_testkit::random::Random;
@@ -59,14 +59,15 @@ fn exact_travel_is_within_travel_bounds() {
         ];
         let assembly = Assembly::new(parts).unwrap();
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-        let touching = liaisons(&bodies, Watch::default()).unwrap();
+        let touching = find_liaisons(&bodies, Watch::default()).unwrap();
         let given = vec![world.matrix3.z_axis.normalize()];
-        let choice = Choice::default().with_given(given).with_search(false);
-        let found = candidates(&bodies, &touching, &choice).unwrap();
+        let choice = CandidateOptions::default().with_given(given).with_search(false);
+        let found = find_candidates(&bodies, &touching, &choice).unwrap();
         let all = [true; 2];
         let start = StartOverlap::Refuse;
         let matrix =
-            Matrix::new(&bodies, &found.directions(), &all, start, Watch::default()).unwrap();
+            ContactMatrix::new(&bodies, &found.directions(), &all, start, Watch::default())
+                .unwrap();
         let options = PlanOptions::default().with_samples(0);
         let plan = disassemble(&bodies, &matrix, &[], options, Watch::default()).unwrap();
         let step = &plan.steps[0];
@@ -107,15 +108,16 @@ fn safe_travel_is_the_lower_bound_of_the_nominal_contact() {
         let assembly = Assembly::new(parts).unwrap();
         let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance)).unwrap();
         let down = -world.matrix3.z_axis.normalize();
-        let found = rooms(&bodies, &[down], StartOverlap::Refuse, Watch::default()).unwrap();
-        let PartRoom::Blocked { stop, .. } = found[0][0] else { panic!("{found:?}") };
+        let found =
+            travels_of_parts(&bodies, &[down], StartOverlap::Refuse, Watch::default()).unwrap();
+        let PartTravel::Blocked { stop, .. } = found[0][0] else { panic!("{found:?}") };
         let [low, high] = stop.translation.bounds();
         assert!(low <= 7.0 + 1e-12 && low > 7.0 - 1e-9 && high >= 7.0 - 1e-12, "{stop:?}");
         // If rounding hides the contact of the nominal facets, the shrunk bodies meet beyond it.
         assert!(high < 7.0 + tolerance + 1e-9, "{stop:?}");
         assert_eq!(stop.distance(), low);
-        assert!(low <= stop.displaced.lower);
-        assert!((stop.displaced.value - 7.0 - tolerance).abs() < 1e-9);
+        assert!(low <= stop.shrunk_translation.lower);
+        assert!((stop.shrunk_translation.value - 7.0 - tolerance).abs() < 1e-9);
     }
     // With a minimum gap, the safe travel is the lower bound of the expanded parts.
     let parts = vec![
@@ -123,9 +125,13 @@ fn safe_travel_is_the_lower_bound_of_the_nominal_contact() {
         part("b", &[cuboid([0.0, 0.0, 4.0], [1.0, 1.0, 5.0])]),
     ];
     let assembly = Assembly::new(parts).unwrap();
-    let bodies = Bodies::new(&assembly, Fit::Apart(0.5)).unwrap();
-    let found = rooms(&bodies, &[DVec3::Z], StartOverlap::Refuse, Watch::default()).unwrap();
-    let PartRoom::Blocked { stop, .. } = found[0][0] else { panic!("{found:?}") };
-    assert_eq!((stop.distance(), stop.translation), (stop.displaced.lower, stop.displaced));
+    let bodies = Bodies::new(&assembly, Fit::MinGap(0.5)).unwrap();
+    let found =
+        travels_of_parts(&bodies, &[DVec3::Z], StartOverlap::Refuse, Watch::default()).unwrap();
+    let PartTravel::Blocked { stop, .. } = found[0][0] else { panic!("{found:?}") };
+    assert_eq!(
+        (stop.distance(), stop.translation),
+        (stop.shrunk_translation.lower, stop.shrunk_translation)
+    );
     assert!((stop.distance() - 2.5).abs() < 1e-9);
 }

@@ -7,10 +7,10 @@ use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::roles::{PairFit, Role};
-use colltrans_assembly::rooms::rooms;
 use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::start::Start;
-use colltrans_assembly::{Assembly, Bodies, Fit, Room, Watch};
+use colltrans_assembly::travel::travels_of_parts;
+use colltrans_assembly::{Assembly, Bodies, Fit, FreeTravel, Watch};
 use colltrans_assembly_io::read::{ReadOptions, read};
 
 /// Returns the folder of the collection; `None` if it is missing.
@@ -35,8 +35,8 @@ fn gearbox_plan_removes_bearings_as_groups() {
     let assembly = read(folder.join("gearbox"), &ReadOptions::default()).unwrap();
     let bodies = Bodies::new(&assembly, Fit::Tolerance(0.06)).unwrap();
     let plan = planned(&bodies);
-    assert!(plan.left.is_empty());
-    let steps: Vec<Vec<&str>> = plan.steps.iter().map(|s| assembly.names(&s.parts)).collect();
+    assert!(plan.remaining.is_empty());
+    let steps: Vec<Vec<&str>> = plan.steps.iter().map(|s| assembly.part_names(&s.parts)).collect();
     let at = |name: &str| steps.iter().position(|s| s.contains(&name)).unwrap();
     for side in ["front", "rear"] {
         let bearing = &steps[at(&format!("{side}_inner"))];
@@ -48,15 +48,15 @@ fn gearbox_plan_removes_bearings_as_groups() {
         steps.iter().all(|s| s.len() == 1 || s.len() == 9 || s == &["key", "shaft"]),
         "{steps:?}"
     );
-    assert_eq!(assembly.names(&plan.last), ["housing"]);
+    assert_eq!(assembly.part_names(&plan.base), ["housing"]);
     assert!((0..4).all(|k| at(&format!("bolt_{k}")) < at("cover")));
     assert!(at("cover") < at("front_inner") && at("front_inner") < at("spacer"));
     assert!(at("spacer") < at("gear") && at("gear") < at("key"));
     let out = steps.iter().position(|s| s == &["key"]).unwrap();
-    assert_eq!(plan.steps[out].within, Some(at("key")));
+    assert_eq!(plan.steps[out].group_step, Some(at("key")));
     let key = plan.steps[out].direction;
     assert!(key.z > 0.999, "{key}");
-    assert_eq!(plan.stuck.len(), 2, "translations cannot take the bearings apart");
+    assert_eq!(plan.interlocked.len(), 2, "translations cannot take the bearings apart");
 }
 
 #[test]
@@ -66,10 +66,10 @@ fn suggested_tolerance_of_gearbox_permits_full_plan() {
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     let start = Start::new(&bodies, Watch::default()).unwrap();
     assert_eq!(start.remaining().count(), 3);
-    let tolerance = start.suggested.unwrap();
+    let tolerance = start.suggested_tolerance.unwrap();
     assert!((0.004..0.006).contains(&tolerance), "{tolerance}");
     let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance)).unwrap();
-    assert!(bodies.overlapping().is_empty());
+    assert!(bodies.overlapping_pairs().is_empty());
     let plan = planned(&bodies);
     let mut sizes: Vec<usize> = plan.steps.iter().map(|s| s.parts.len()).collect();
     sizes.sort_unstable();
@@ -86,12 +86,12 @@ fn legs_of_table_are_unscrewed() {
     let assembly = assembly.with_pair([&["top"], &["leg*"]], thread).unwrap();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     let plan = planned(&bodies);
-    assert!(plan.stuck.is_empty() && plan.steps.len() == 4, "{:?}", plan.stuck);
-    assert_eq!(assembly.names(&plan.last), ["top"]);
+    assert!(plan.interlocked.is_empty() && plan.steps.len() == 4, "{:?}", plan.interlocked);
+    assert_eq!(assembly.part_names(&plan.base), ["top"]);
     // Overlap of each leg with the top.
     let drawn: [f64; 4] = [0.0, 2.7e-4, 0.0, 0.0];
     for step in &plan.steps {
-        let turn = step.turn().unwrap();
+        let turn = step.first_turn().unwrap();
         let most = drawn[step.parts[0] - 1].max(bodies.fit().tolerance());
         assert!(turn.proof.as_ref().is_ok_and(|proof| proof.tolerance <= most), "{turn:?}");
         let pitch = step.path[0].travel / turn.turns.abs();
@@ -111,18 +111,18 @@ fn free_travel_of_overlapping_pieces_is_minimum_over_pairs() {
     std::fs::write(&file, serde_json::json!({ "parts": list }).to_string()).unwrap();
     let assembly = read(&file, &outside_allowed()).unwrap();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-    assert!(bodies.overlapping().len() > 50);
+    assert!(bodies.overlapping_pairs().len() > 50);
     let start = StartOverlap::Ignore;
     let directions = Sphere::new(1).directions;
-    let table = rooms(&bodies, &directions, start, Watch::default()).unwrap();
+    let table = travels_of_parts(&bodies, &directions, start, Watch::default()).unwrap();
     let at_once = 4.0 * bodies.fit().tolerance();
     let mut workspace = Workspace::default();
     for (k, &d) in directions.iter().enumerate().step_by(5) {
         for (a, row) in table.iter().enumerate() {
             let others = (0..bodies.len()).filter(|&b| b != a);
-            let rooms = others.map(|b| bodies.room([a, b], d, None, start, &mut workspace));
-            let distance = |room: Room| match room {
-                Room::Blocked(stop) => stop.displaced.value,
+            let rooms = others.map(|b| bodies.free_travel([a, b], d, None, start, &mut workspace));
+            let distance = |room: FreeTravel| match room {
+                FreeTravel::Blocked(stop) => stop.shrunk_translation.value,
                 _ => f64::INFINITY,
             };
             let least = rooms.map(distance).fold(f64::INFINITY, f64::min);

@@ -2,9 +2,11 @@
 //! trials of all groups along all directions.
 
 use colltrans::solid::{StartOverlap, Workspace};
-use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Moves, Plan, PlanOptions, Step, and_or, disassemble, remove};
-use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Room, Watch};
+use colltrans_assembly::matrix::ContactMatrix;
+use colltrans_assembly::plan::{
+    PathSearch, Plan, PlanOptions, Step, disassemble, precedence_graph, remove,
+};
+use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, FreeTravel, Watch};
 use colltrans_testkit::random::Random;
 use glam::DVec3;
 
@@ -13,12 +15,12 @@ use crate::common::{cuboid, part, planned, stud, well};
 const AXES: [DVec3; 6] = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
 
 fn options() -> PlanOptions {
-    PlanOptions::default().with_samples(0).with_legs(1).with_proofs(false)
+    PlanOptions::default().with_samples(0).with_max_moves(1).with_proofs(false)
 }
 
-fn matrix<'a>(bodies: &'a Bodies<'a>) -> Matrix<'a> {
+fn matrix<'a>(bodies: &'a Bodies<'a>) -> ContactMatrix<'a> {
     let all = vec![true; bodies.len()];
-    Matrix::new(bodies, &AXES, &all, StartOverlap::Refuse, Watch::default()).unwrap()
+    ContactMatrix::new(bodies, &AXES, &all, StartOverlap::Refuse, Watch::default()).unwrap()
 }
 
 /// The constraints as bit sets, independent of the assembly.
@@ -48,7 +50,7 @@ impl Judge {
         let mut workspace = Workspace::default();
         let mut meets = |a: usize, b: usize, d: DVec3| {
             let start = StartOverlap::Refuse;
-            a != b && bodies.room([a, b], d, None, start, &mut workspace) != Room::Free
+            a != b && bodies.free_travel([a, b], d, None, start, &mut workspace) != FreeTravel::Free
         };
         let count = bodies.len();
         let met = AXES.map(|d| {
@@ -101,7 +103,7 @@ impl Judge {
 
     /// Checks that each step can leave, also in random orders that respect `after`. Returns the remaining parts.
     fn check_walk(&self, plan: &Plan, within: Option<usize>, all: u32, random: &mut Random) -> u32 {
-        let own = plan.steps.iter().enumerate().filter(|(_, step)| step.within == within);
+        let own = plan.steps.iter().enumerate().filter(|(_, step)| step.group_step == within);
         let steps: Vec<(usize, &Step)> = own.collect();
         let mut left = all;
         for &(_, step) in &steps {
@@ -113,7 +115,7 @@ impl Judge {
             let (mut left, mut done) = (all, vec![false; plan.steps.len()]);
             for _ in 0..steps.len() {
                 let ready = |(k, step): &&(usize, &Step)| {
-                    !done[*k] && step.after.iter().all(|&j| done[j] || Some(j) == within)
+                    !done[*k] && step.predecessors.iter().all(|&j| done[j] || Some(j) == within)
                 };
                 let ready: Vec<_> = steps.iter().filter(ready).collect();
                 let &&(k, step) = random_of(&ready, random);
@@ -130,16 +132,23 @@ impl Judge {
     /// Checks the rounds in reverse order, the assembly sequence, and each alternative of the AND/OR graph.
     fn check_assembly(&self, plan: &Plan, ways: &serde_json::Value) {
         let all = (1_u32 << self.count) - 1;
-        let main = |k: &usize| plan.steps[*k].within.is_none();
+        let main = |k: &usize| plan.steps[*k].group_step.is_none();
         let mut left = all;
-        for k in plan.rounds().into_iter().flat_map(|round| round.into_iter().rev()).filter(main) {
+        for k in plan
+            .parallel_rounds()
+            .into_iter()
+            .flat_map(|round| round.into_iter().rev())
+            .filter(main)
+        {
             let step = &plan.steps[k];
             assert!(self.leaves(bits(&step.parts), left, Self::position(step.direction)));
             left &= !bits(&step.parts);
         }
-        let order = plan.assembly();
+        let order = plan.assembly_sequence();
         for (at, (step, after)) in order.iter().enumerate() {
-            assert!(after.iter().all(|&k| k < at && plan.steps[order[k].0].after.contains(step)));
+            assert!(
+                after.iter().all(|&k| k < at && plan.steps[order[k].0].predecessors.contains(step))
+            );
         }
         for k in order.into_iter().map(|(k, _)| k).filter(main) {
             let set = bits(&plan.steps[k].parts);
@@ -225,7 +234,8 @@ fn with_demands(mut assembly: Assembly, random: &mut Random) -> (Assembly, Deman
         }
     }
     for unit in assembly.constraints().units() {
-        let which = if unit.apart { &mut demands.subassemblies } else { &mut demands.together };
+        let which =
+            if unit.is_subassembly { &mut demands.subassemblies } else { &mut demands.together };
         which.push(bits(&unit.parts));
     }
     for _ in 0..random.index(4) {
@@ -248,7 +258,7 @@ fn constrained_plans_remove_as_much_as_exhaustive_search() {
             disassemble(&bodies, &matrix(&bodies), &[], options(), Watch::default()).unwrap();
         let all = (1_u32 << bodies.len()) - 1;
         let left = judge.check_walk(&plan, None, all, &mut random);
-        assert_eq!(left, bits(&plan.left) | bits(&plan.last), "round {round}");
+        assert_eq!(left, bits(&plan.remaining) | bits(&plan.base), "round {round}");
         // The plate is the base, unless it must leave before others.
         if judge.demands.fixed == 1 || judge.demands.before.iter().all(|pair| pair[0] != 0) {
             judge.demands.fixed = 1;
@@ -257,15 +267,15 @@ fn constrained_plans_remove_as_much_as_exhaustive_search() {
         for (k, step) in plan.steps.iter().enumerate().filter(|(_, step)| step.parts.len() > 1) {
             judge.check_walk(&plan, Some(k), bits(&step.parts), &mut random);
         }
-        judge.check_assembly(&plan, &and_or(&assembly, &matrix(&bodies)));
-        whole += usize::from(plan.stuck.is_empty());
-        held += usize::from(!plan.stuck.is_empty());
+        judge.check_assembly(&plan, &precedence_graph(&assembly, &matrix(&bodies)));
+        whole += usize::from(plan.interlocked.is_empty());
+        held += usize::from(!plan.interlocked.is_empty());
         moved += plan.steps.len();
         assert!(
-            plan.stuck
+            plan.interlocked
                 .iter()
-                .filter(|s| s.constrained)
-                .all(|s| { s.because(&bodies).contains("Constraints on their order") })
+                .filter(|s| s.is_constrained)
+                .all(|s| { s.explain(&bodies).contains("Constraints on their order") })
         );
     }
     assert!(whole > 100 && held > 30 && moved > 700, "{whole} {held} {moved}");
@@ -290,21 +300,21 @@ fn smallest_removal_set_equals_exhaustive_search() {
         };
         let plan = remove(&bodies, &matrix(&bodies), &[], &wanted, options(), Watch::default());
         let least = judge.least(bits(&wanted));
-        if wanted.iter().any(|&part| assembly.parts()[part].fixed()) {
-            assert!(matches!(plan, Err(AssemblyError::Fixed { .. })) && least.is_none());
+        if wanted.iter().any(|&part| assembly.parts()[part].is_fixed()) {
+            assert!(matches!(plan, Err(AssemblyError::FixedAndRemoved { .. })) && least.is_none());
             held += 1;
             continue;
         }
         let plan = plan.unwrap();
-        let found = plan.wanted.as_ref().unwrap();
-        assert_eq!(found.out, least.is_some(), "round {round}: {found:?}");
+        let found = plan.selection.as_ref().unwrap();
+        assert_eq!(found.is_complete, least.is_some(), "round {round}: {found:?}");
         if let Some(least) = least {
             let count = found.parts.len() + found.others.len();
-            assert_eq!((count as u32, found.least), (least, true), "round {round}: {found:?}");
+            assert_eq!((count as u32, found.is_minimal), (least, true), "round {round}: {found:?}");
             let all = (1_u32 << bodies.len()) - 1;
             let left = judge.check_walk(&plan, None, all, &mut random);
             assert_eq!(left & bits(&wanted), 0);
-            assert_eq!(left, bits(&plan.last), "what remains");
+            assert_eq!(left, bits(&plan.base), "what remains");
             out += 1;
             alone += usize::from(found.others.is_empty());
         } else {
@@ -332,11 +342,12 @@ fn plan_names(assembly: &Assembly, wanted: &[&str]) -> (Vec<Vec<String>>, Plan) 
     let plan = match wanted {
         [] => disassemble(&bodies, &matrix, &[], options(), watch).unwrap(),
         names => {
-            let parts = assembly.group(names).unwrap();
+            let parts = assembly.parts_named(names).unwrap();
             remove(&bodies, &matrix, &[], &parts, options(), watch).unwrap()
         }
     };
-    let names = |step: &Step| assembly.names(&step.parts).into_iter().map(str::to_owned).collect();
+    let names =
+        |step: &Step| assembly.part_names(&step.parts).into_iter().map(str::to_owned).collect();
     (plan.steps.iter().map(names).collect(), plan)
 }
 
@@ -345,23 +356,23 @@ fn removal_of_a_core_takes_only_blocking_parts() {
     let assembly = closed().with_fixed(&["box"]).unwrap();
     let (steps, plan) = plan_names(&assembly, &["core"]);
     assert_eq!(steps, [["cup"], ["lid"], ["core"]]);
-    assert_eq!(assembly.names(&plan.last), ["box", "post"]);
-    let words = plan.wanted.unwrap().words(&assembly);
+    assert_eq!(assembly.part_names(&plan.base), ["box", "post"]);
+    let words = plan.selection.unwrap().describe(&assembly);
     assert!(words.starts_with("core: 2 other parts go (lid, cup); no fewer"), "{words}");
     let (steps, plan) = plan_names(&assembly, &["post"]);
     assert_eq!(steps, [["post"]]);
-    assert!(plan.wanted.unwrap().words(&assembly).contains("nothing else has to go"));
+    assert!(plan.selection.unwrap().describe(&assembly).contains("nothing else has to go"));
     let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
     for parts in [vec![], vec![0, 1, 2, 3, 4]] {
         let none = remove(&bodies, &matrix(&bodies), &[], &parts, options(), Watch::default());
-        assert!(matches!(none, Err(AssemblyError::Removal { of: 5, .. })));
+        assert!(matches!(none, Err(AssemblyError::InvalidRemoval { of: 5, .. })));
     }
     let fixed = remove(&bodies, &matrix(&bodies), &[], &[0, 1], options(), Watch::default());
-    assert!(matches!(fixed, Err(AssemblyError::Fixed { name }) if name == "box"));
+    assert!(matches!(fixed, Err(AssemblyError::FixedAndRemoved { name }) if name == "box"));
     let held = closed().with_fixed(&["c*", "box"]).unwrap();
-    assert_eq!(held.parts().iter().filter(|part| part.fixed()).count(), 3);
+    assert_eq!(held.parts().iter().filter(|part| part.is_fixed()).count(), 3);
     let core = closed().with_fixed(&["box"]).unwrap().with_never(&["core"], DVec3::Z, 179.0);
-    let words = plan_names(&core.unwrap(), &["core"]).1.wanted.unwrap().words(&assembly);
+    let words = plan_names(&core.unwrap(), &["core"]).1.selection.unwrap().describe(&assembly);
     assert!(
         words.ends_with("no removal path was found, although all removable parts were removed")
     );
@@ -373,17 +384,20 @@ fn subassembly_leaves_as_one_and_only_units_stay_together() {
     let sub = plain.clone().with_subassembly("top", &["lid", "cup"]).unwrap();
     let (steps, plan) = plan_names(&sub, &[]);
     let at = steps.iter().position(|step| *step == ["lid", "cup"]).unwrap();
-    assert_eq!((steps[at + 1].clone(), plan.steps[at + 1].within), (vec!["cup".into()], Some(at)));
-    assert_eq!(sub.constraints().name(&plan.steps[at].parts), Some("top"));
+    assert_eq!(
+        (steps[at + 1].clone(), plan.steps[at + 1].group_step),
+        (vec!["cup".into()], Some(at))
+    );
+    assert_eq!(sub.constraints().group_name(&plan.steps[at].parts), Some("top"));
     let one = plain.clone().with_together(&["lid", "cup"]).unwrap();
     let (steps, plan) = plan_names(&one, &[]);
     assert!(steps.contains(&vec!["lid".into(), "cup".into()]) && steps.len() == 3);
-    assert!(plan.stuck.is_empty() && assembly_left(&one, &plan) == ["box"]);
+    assert!(plan.interlocked.is_empty() && assembly_left(&one, &plan) == ["box"]);
     // If up is forbidden, the core cannot leave, and the plan reports the constraint.
     let never = plain.with_never(&["co*"], DVec3::Z, 30.0).unwrap();
     let (_, plan) = plan_names(&never, &[]);
     assert_eq!(assembly_left(&never, &plan), ["box", "core"]);
-    assert!(plan.stuck[0].constrained);
+    assert!(plan.interlocked[0].is_constrained);
     let order = closed().with_before(&["box"], &["post", "cup"]).unwrap();
     let (steps, _) = plan_names(&order, &[]);
     let first = |name: &str| steps.iter().position(|step| step[0] == name).unwrap();
@@ -391,14 +405,14 @@ fn subassembly_leaves_as_one_and_only_units_stay_together() {
 }
 
 fn assembly_left<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<&'a str> {
-    assembly.names(&[&plan.left[..], &plan.last].concat())
+    assembly.part_names(&[&plan.remaining[..], &plan.base].concat())
 }
 
 #[test]
 fn paths_of_several_moves_obey_constraints() {
     let plan = |assembly: Assembly| {
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-        planned(&bodies, PlanOptions::default().with_legs(4))
+        planned(&bodies, PlanOptions::default().with_max_moves(4))
     };
     let plain = plan(stud());
     let [step] = &plain.steps[..] else { panic!("{plain:?}") };
@@ -415,8 +429,8 @@ fn paths_of_several_moves_obey_constraints() {
         assert!(own.all(|leg| leg.direction.dot(first) < 0.7), "{step:?}");
     }
     let held = plan(never.with_fixed(&["plate"]).unwrap());
-    assert!(held.steps.is_empty() && held.stuck[0].constrained);
-    assert_eq!(held.stuck[0].moves, Moves::NotKept);
+    assert!(held.steps.is_empty() && held.interlocked[0].is_constrained);
+    assert_eq!(held.interlocked[0].path_search, PathSearch::ConstraintsViolated);
     // Parts that leave as one do not move separately.
     let as_one = plan(stud().with_together(&["plate", "stud"]).unwrap());
     assert!(as_one.steps.is_empty(), "{as_one:?}");

@@ -13,7 +13,7 @@ use crate::common::{CUBE, mesh_of_3mf, package};
 use colltrans_assembly::map::{self, MapOptions, RemovalMap};
 use colltrans_assembly::plan::PlanOptions;
 use colltrans_assembly::report::{facts, glb, html};
-use colltrans_assembly::{Assembly, Bodies, Fit, Question, Watch};
+use colltrans_assembly::{AnalysisRequest, Assembly, Bodies, Fit, Watch};
 use colltrans_assembly_io::read::{ReadOptions, read_from};
 use quick_xml::events::Event;
 use serde_json::{Value, json};
@@ -42,18 +42,18 @@ struct Outputs {
 fn all_outputs(assembly: &Assembly, title: &str) -> Outputs {
     let watch = Watch::default();
     let bodies = Bodies::new(assembly, Fit::Tolerance(1e-6)).unwrap();
-    let question = Question::default().with_options(PlanOptions::default().with_samples(12));
-    let mut findings = question.ask(&bodies, watch).unwrap();
+    let question = AnalysisRequest::default().with_options(PlanOptions::default().with_samples(12));
+    let mut findings = question.analyse(&bodies, watch).unwrap();
     let options = MapOptions::default().with_samples(12).with_border(1.0);
     let options = options.with_start(PlanOptions::default().start);
     let map = RemovalMap::new(&bodies, &[0], &[], options, watch).unwrap();
     findings.maps = vec![(title.to_owned(), map)];
     Outputs {
-        page: html::page(&findings, title),
+        page: html::report_page(&findings, title),
         table: findings.matrix.to_csv(&bodies),
-        pictures: findings.maps.iter().map(|(name, found)| map::svg(found, name)).collect(),
-        animation: glb::animation(assembly, &findings.plan),
-        facts: facts::json(&findings),
+        pictures: findings.maps.iter().map(|(name, found)| map::render_svg(found, name)).collect(),
+        animation: glb::plan_animation(assembly, &findings.plan),
+        facts: facts::findings_json(&findings),
     }
 }
 

@@ -3,8 +3,8 @@
 use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::report::html;
 use colltrans_assembly::roles::Role;
-use colltrans_assembly::suggest::applied;
-use colltrans_assembly::{Assembly, Bodies, Findings, Fit, Part, Piece, Question, Watch};
+use colltrans_assembly::suggest::apply_suggestions;
+use colltrans_assembly::{Analysis, AnalysisRequest, Assembly, Bodies, Fit, Part, Piece, Watch};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::machines::{
     NamedPart, TABLE_LEGS, flange, radial_engine, screwed_table, threaded_block,
@@ -26,9 +26,9 @@ fn assembled(parts: Vec<NamedPart>) -> Assembly {
 /// Returns the parts that each stage removes, and asserts that the plan is complete and that only `last`
 /// remains.
 fn stage_texts(assembly: &Assembly, plan: &Plan, last: &str) -> Vec<String> {
-    assert!(plan.left.is_empty() && plan.stuck.is_empty(), "{:?}", plan.stuck);
-    assert_eq!(assembly.names(&plan.last), [last]);
-    plan.stages().iter().map(|stage| plan.takes(assembly, stage)).collect()
+    assert!(plan.remaining.is_empty() && plan.interlocked.is_empty(), "{:?}", plan.interlocked);
+    assert_eq!(assembly.part_names(&plan.base), [last]);
+    plan.stages().iter().map(|stage| plan.describe_stage(assembly, stage)).collect()
 }
 
 #[test]
@@ -64,11 +64,12 @@ fn radial_engine_plan_finishes_each_cylinder() {
         assert!(chain.windows(2).all(|pair| pair[1] == pair[0] + 1), "{stage_texts:?}");
     }
     assert_eq!(stage_texts.len(), 4 + 5 * 4, "{stage_texts:?}");
-    let repeats = plan.repeats(&plan.stages());
+    let repeats = plan.repeated_stages(&plan.stages());
     assert_eq!(repeats.last(), Some(&(4..8, 5)), "{repeats:?}");
     assert_eq!(repeats.len(), 5);
-    let findings = Question::default().look(&bodies, Watch::default()).unwrap();
-    let page = html::page(&Findings { plan, ..findings }, "engine");
+    let findings =
+        AnalysisRequest::default().analyse_without_plan(&bodies, Watch::default()).unwrap();
+    let page = html::report_page(&Analysis { plan, ..findings }, "engine");
     assert_eq!(page.matches("class=\"sheet step\"").count(), 4 + 4);
     assert!(page.contains("barrel_4") && page.contains("rod_3"));
 }
@@ -78,7 +79,7 @@ fn assert_unscrewing_is_free(assembly: &Assembly, plan: &Plan, turns: std::ops::
     let mut left: Vec<usize> = (0..assembly.parts().len()).collect();
     for step in &plan.steps {
         left.retain(|part| !step.parts.contains(part));
-        if let Some(turn) = step.turn() {
+        if let Some(turn) = step.first_turn() {
             assert!(turns.contains(&turn.turns.abs()), "{turn:?}");
             crate::common::turns_freely(assembly, step, &left);
         }
@@ -92,14 +93,16 @@ fn threads_with_clearance_are_suggested_and_unscrewed() {
     let drawn = assembled(threaded_block());
     let fit = Fit::default_for(&drawn);
     let found = crate::common::suggested(&Bodies::new(&drawn, fit).unwrap());
-    let pairs: Vec<Vec<&str>> = found.iter().map(|s| drawn.names(&s.parts)).collect();
+    let pairs: Vec<Vec<&str>> = found.iter().map(|s| drawn.part_names(&s.parts)).collect();
     assert_eq!(pairs, [["base", "screw_0"], ["base", "screw_1"]], "{found:?}");
-    assert!(found.iter().all(|s| s.fit.role == Some(Role::Thread) && s.why.ends_with("with play")));
-    let assembly = applied(drawn.clone(), &found).unwrap();
+    assert!(
+        found.iter().all(|s| s.fit.role == Some(Role::Thread) && s.reason.ends_with("with play"))
+    );
+    let assembly = apply_suggestions(drawn.clone(), &found).unwrap();
     let bodies = Bodies::new(&assembly, fit).unwrap();
     let plan = crate::common::planned(&bodies, PlanOptions::default());
     assert_eq!(stage_texts(&assembly, &plan, "base"), ["2 x screw", "cap", "shaft"]);
-    assert!(plan.steps[..2].iter().all(|step| step.turn().is_some()), "{plan:?}");
+    assert!(plan.steps[..2].iter().all(|step| step.first_turn().is_some()), "{plan:?}");
     assert_unscrewing_is_free(&assembly, &plan, 1.8..2.3);
 }
 
@@ -110,21 +113,21 @@ fn legs_overlapping_their_threads_are_rotated_and_unscrewed() {
     let fit = Fit::default_for(&drawn);
     let found = crate::common::suggested(&Bodies::new(&drawn, fit).unwrap());
     assert_eq!(found.len(), 4, "{found:?}");
-    let assembly = applied(drawn.clone(), &found).unwrap();
+    let assembly = apply_suggestions(drawn.clone(), &found).unwrap();
     let bodies = Bodies::new(&assembly, fit).unwrap();
     let plan = crate::common::planned(&bodies, PlanOptions::default());
     assert_eq!(stage_texts(&assembly, &plan, "top"), ["4 x leg"]);
     for step in &plan.steps {
         let (by, aside) = TABLE_LEGS[step.parts[0] - 1];
-        let turn = step.turn().unwrap();
+        let turn = step.first_turn().unwrap();
         let known = glam::DVec2::from(aside).length();
         assert!(
             turn.proof.as_ref().is_ok_and(|proof| proof.tolerance == fit.tolerance()),
             "{turn:?}"
         );
         // The leg moves down, therefore the rotation is reversed in its direction.
-        assert!((turn.phase - by).abs() < 0.1, "{by} {turn:?}");
-        assert!((turn.aside.length() - known).abs() < 0.02, "{aside:?} {turn:?}");
+        assert!((turn.initial_turns - by).abs() < 0.1, "{by} {turn:?}");
+        assert!((turn.offset.length() - known).abs() < 0.02, "{aside:?} {turn:?}");
     }
     assert_unscrewing_is_free(&assembly, &plan, 1.95..2.1);
 }

@@ -4,8 +4,8 @@
 use crate::common::*;
 use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::plan::{Plan, PlanOptions};
-use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::Sphere;
+use colltrans_assembly::travel::{PartTravel, travel_of_group, travels_of_parts};
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::solids::ROOM_WITH_WINDOW;
@@ -22,9 +22,9 @@ fn taken_apart(parts: Vec<colltrans_assembly::Part>, tolerance: f64) -> (Assembl
 
 /// Returns the names of the parts of each step, and last those of the parts that all others leave.
 fn names<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<Vec<&'a str>> {
-    let last = Some(&plan.last).filter(|parts| !parts.is_empty());
+    let last = Some(&plan.base).filter(|parts| !parts.is_empty());
     let steps = plan.steps.iter().map(|s| &s.parts).chain(last);
-    steps.map(|parts| assembly.names(parts)).collect()
+    steps.map(|parts| assembly.part_names(parts)).collect()
 }
 
 /// Walks every step in small increments and checks that no parts overlap. At the end each part has left once or
@@ -32,11 +32,11 @@ fn names<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<Vec<&'a str>> {
 fn walk(bodies: &Bodies, plan: &Plan) {
     let mut gone = vec![false; bodies.len()];
     for (k, step) in plan.steps.iter().enumerate() {
-        let group: Vec<usize> = match step.within {
+        let group: Vec<usize> = match step.group_step {
             None => (0..bodies.len()).filter(|&p| !gone[p]).collect(),
             // The remaining parts of the group that was removed before.
             Some(outer) => {
-                let earlier = plan.steps[..k].iter().filter(|s| s.within == Some(outer));
+                let earlier = plan.steps[..k].iter().filter(|s| s.group_step == Some(outer));
                 let apart: Vec<usize> = earlier.flat_map(|s| s.parts.clone()).collect();
                 let all = plan.steps[outer].parts.iter().copied();
                 all.filter(|p| !apart.contains(p)).collect()
@@ -45,7 +45,7 @@ fn walk(bodies: &Bodies, plan: &Plan) {
         assert!(step.parts.iter().all(|p| group.contains(p)));
         let mut at = vec![DVec3::ZERO; bodies.len()];
         // Each leg, and the return legs after the parts have left.
-        for (n, leg) in step.path.iter().chain(&step.back).enumerate() {
+        for (n, leg) in step.path.iter().chain(&step.return_legs).enumerate() {
             let out = n >= step.path.len();
             let others = group.iter().filter(|p| !leg.parts.contains(p));
             let others: Vec<usize> =
@@ -59,12 +59,12 @@ fn walk(bodies: &Bodies, plan: &Plan) {
             }
             leg.parts.iter().for_each(|&p| at[p] += leg.direction * leg.travel);
         }
-        if step.within.is_none() {
+        if step.group_step.is_none() {
             step.parts.iter().for_each(|&p| gone[p] = true);
         }
     }
     let left: Vec<usize> = (0..bodies.len()).filter(|&p| !gone[p]).collect();
-    assert_eq!(left, [&plan.left[..], &plan.last].concat());
+    assert_eq!(left, [&plan.remaining[..], &plan.base].concat());
 }
 
 /// Returns the travel of an open box before it meets another: `None` if it never does, negative if they overlap at
@@ -98,26 +98,27 @@ fn rooms_of_boxes_equal_interval_arithmetic() {
         let boxes: Vec<[DVec3; 2]> = assembly
             .parts()
             .iter()
-            .map(|p| p.solid().bounds().grown(-tolerance / 2.0))
+            .map(|p| p.solid().bounds().expanded(-tolerance / 2.0))
             .map(|b| [b.low, b.high])
             .collect();
         let mut directions = vec![DVec3::X, DVec3::NEG_Z];
         // Edges pass edges exactly, because no component is rounded.
         directions.push(DVec3::new(0.75, 0.0, -1.0));
         directions.extend((0..4).map(|_| random.direction()));
-        let found = rooms(&bodies, &directions, StartOverlap::Refuse, Watch::default()).unwrap();
+        let found =
+            travels_of_parts(&bodies, &directions, StartOverlap::Refuse, Watch::default()).unwrap();
         for a in 0..12 {
             for (k, &d) in directions.iter().enumerate() {
                 let all = (0..12)
                     .filter(|&b| b != a)
                     .filter_map(|b| room_of_boxes(boxes[a], boxes[b], d));
                 match (all.reduce(f64::min), found[a][k]) {
-                    (None, PartRoom::Free) => free += 1,
-                    (Some(t), PartRoom::Overlapping { .. }) if t < 1e-9 => overlapping += 1,
-                    (Some(t), PartRoom::Blocked { stop, by, .. }) => {
+                    (None, PartTravel::Free) => free += 1,
+                    (Some(t), PartTravel::Overlapping { .. }) if t < 1e-9 => overlapping += 1,
+                    (Some(t), PartTravel::Blocked { stop, by, .. }) => {
                         blocked += 1;
                         assert!(
-                            t > -1e-9 && (stop.displaced.value - t).abs() < 1e-9,
+                            t > -1e-9 && (stop.shrunk_translation.value - t).abs() < 1e-9,
                             "{t}, {stop:?}"
                         );
                         let own = room_of_boxes(boxes[a], boxes[by], d).unwrap();
@@ -127,7 +128,8 @@ fn rooms_of_boxes_equal_interval_arithmetic() {
                         let place = t - tolerance / stop.normal.dot(d);
                         let distance = stop.distance();
                         assert!(
-                            distance >= place - 1e-9 && distance <= stop.displaced.lower.max(0.0)
+                            distance >= place - 1e-9
+                                && distance <= stop.shrunk_translation.lower.max(0.0)
                         );
                         near += usize::from(distance - place.max(0.0) < 1e-9);
                         // Beyond the upper bound the nominal boxes overlap.
@@ -187,8 +189,8 @@ fn drawer_is_removed_with_its_contents() {
     assert_eq!(order[0], ["drawer", "cup"]);
     assert_eq!(plan.steps[0].direction, DVec3::X);
     assert!((plan.steps[0].travel.value - 8.0).abs() < 1e-6);
-    assert_eq!((order[1].as_slice(), plan.steps[1].within), (&["cup"][..], Some(0)));
-    assert_eq!(plan.left, [0]);
+    assert_eq!((order[1].as_slice(), plan.steps[1].group_step), (&["cup"][..], Some(0)));
+    assert_eq!(plan.remaining, [0]);
 }
 
 #[test]
@@ -202,14 +204,14 @@ fn bolt_stops_where_its_head_touches() {
     let bodies = Bodies::new(&assembly, Fit::Tolerance(0.02)).unwrap();
     let room = |d| {
         let start = StartOverlap::Refuse;
-        room_of(&bodies, &[0], &[true; 2], d, start, &mut Workspace::default())
+        travel_of_group(&bodies, &[0], &[true; 2], d, start, &mut Workspace::default())
     };
     assert!(room(DVec3::Z).is_free());
-    let PartRoom::Blocked { stop, .. } = room(DVec3::NEG_Z) else {
+    let PartTravel::Blocked { stop, .. } = room(DVec3::NEG_Z) else {
         panic!("the head must block it")
     };
     assert!(
-        (stop.displaced.value - 1.02).abs() < 1e-9 && (stop.distance() - 1.0).abs() < 1e-9,
+        (stop.shrunk_translation.value - 1.02).abs() < 1e-9 && (stop.distance() - 1.0).abs() < 1e-9,
         "{stop:?}"
     );
     assert_eq!(stop.normal, DVec3::NEG_Z);
@@ -245,10 +247,10 @@ fn chain_of_three_links_leaves_its_box_as_one_group() {
     let (assembly, plan) = taken_apart(parts, 1e-9);
     assert_eq!(names(&assembly, &plan)[0], ["first", "second", "third"]);
     assert_eq!(plan.steps[0].direction, DVec3::Z);
-    assert_eq!(plan.stuck.len(), 1);
-    assert_eq!(plan.stuck[0].parts, [0, 1, 2]);
+    assert_eq!(plan.interlocked.len(), 1);
+    assert_eq!(plan.interlocked[0].parts, [0, 1, 2]);
     // The ends block each other only through the link between them.
-    assert_eq!(plan.stuck[0].holds[0].by[0].0, [1]);
+    assert_eq!(plan.interlocked[0].blocking_sets[0].sets[0].0, [1]);
 }
 
 #[test]
@@ -267,7 +269,7 @@ fn closed_dovetail_is_interlocked() {
         [cuboid([-1.0, -1.0, 1.0], [1.0, 1.0, 2.0]), cuboid([-1.0, -0.5, 1.5], [1.0, 0.5, 4.0])];
     let (_, plan) = taken_apart(vec![part("rail", &rail), part("slide", &slide)], 1e-9);
     assert!(plan.steps.is_empty());
-    assert_eq!((plan.left.as_slice(), plan.stuck.len()), (&[0, 1][..], 1));
+    assert_eq!((plan.remaining.as_slice(), plan.interlocked.len()), (&[0, 1][..], 1));
     // With one end open, it leaves there.
     let (assembly, plan) = taken_apart(vec![part("rail", &rail[..6]), part("slide", &slide)], 1e-9);
     assert_eq!(names(&assembly, &plan), [["slide"], ["rail"]]);
@@ -287,20 +289,21 @@ fn removal_direction_between_samples_is_found() {
         let parts = vec![turned("cube", &cube, turn), turned("room", &room, turn)];
         let assembly = Assembly::new(parts).unwrap();
         let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
-        let found = rooms(&bodies, &samples, StartOverlap::Refuse, Watch::default()).unwrap();
+        let found =
+            travels_of_parts(&bodies, &samples, StartOverlap::Refuse, Watch::default()).unwrap();
         let plan = planned(&bodies, PlanOptions::default());
         walk(&bodies, &plan);
         assert_eq!(names(&assembly, &plan), [["cube"], ["room"]]);
         let out = turn.inverse().transform_vector3(plan.steps[0].direction);
         assert!((0.38..0.47).contains(&(out.z / out.x)), "{out}");
-        if found[0].iter().any(PartRoom::is_free) {
+        if found[0].iter().any(PartTravel::is_free) {
             continue;
         }
         missed += 1;
         // Without the cover and the directions that a proof leaves open, no single move is found, but two moves: to
         // the window, and out.
         let options = PlanOptions::default().with_samples(0).with_proofs(false);
-        assert!(planned(&bodies, options.with_legs(1)).steps.is_empty());
+        assert!(planned(&bodies, options.with_max_moves(1)).steps.is_empty());
         let plan = planned(&bodies, options);
         walk(&bodies, &plan);
         assert_eq!(plan.steps[0].path.len(), 2, "{:?}", plan.steps[0].path);

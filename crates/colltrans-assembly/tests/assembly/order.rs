@@ -2,12 +2,12 @@
 //! exchangeable steps.
 
 use colltrans::solid::{StartOverlap, Workspace};
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
-use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::candidates::{CandidateOptions, find_candidates};
+use colltrans_assembly::liaisons::find_liaisons;
+use colltrans_assembly::matrix::ContactMatrix;
 use colltrans_assembly::plan::{Plan, PlanOptions, Step, disassemble};
 use colltrans_assembly::sphere::Sphere;
-use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Room, Watch};
+use colltrans_assembly::{Assembly, Bodies, Fit, FreeTravel, Part, Piece, Watch};
 use colltrans_testkit::random::Random;
 use glam::{DAffine3, DVec3};
 
@@ -15,12 +15,12 @@ use crate::common::cuboid;
 
 fn planned(bodies: &Bodies, options: PlanOptions) -> (Plan, Vec<DVec3>) {
     let watch = Watch::default();
-    let touching = liaisons(bodies, watch).unwrap();
+    let touching = find_liaisons(bodies, watch).unwrap();
     let given = options.up.map_or(Vec::new(), |up| vec![up, -up]);
-    let choice = Choice::default().with_given(given);
-    let directions = candidates(bodies, &touching, &choice).unwrap().directions();
+    let choice = CandidateOptions::default().with_given(given);
+    let directions = find_candidates(bodies, &touching, &choice).unwrap().directions();
     let all = vec![true; bodies.len()];
-    let matrix = Matrix::new(bodies, &directions, &all, options.start, watch).unwrap();
+    let matrix = ContactMatrix::new(bodies, &directions, &all, options.start, watch).unwrap();
     (disassemble(bodies, &matrix, &[], options, watch).unwrap(), directions)
 }
 
@@ -28,12 +28,12 @@ fn is_free(bodies: &Bodies, group: &[usize], others: &[usize], d: DVec3) -> bool
     let mut workspace = Workspace::default();
     let mut pairs = group.iter().flat_map(|&a| others.iter().map(move |&b| [a, b]));
     let start = StartOverlap::Refuse;
-    pairs.all(|pair| bodies.room(pair, d, None, start, &mut workspace) == Room::Free)
+    pairs.all(|pair| bodies.free_travel(pair, d, None, start, &mut workspace) == FreeTravel::Free)
 }
 
 fn travel(bodies: &Bodies, group: &[usize], others: &[usize], d: DVec3) -> f64 {
     let pairs = group.iter().flat_map(|&a| others.iter().map(move |&b| [a, b]));
-    pairs.map(|[a, b]| bodies.past(a, b, d).value).fold(0.0, f64::max)
+    pairs.map(|[a, b]| bodies.travel_beyond(a, b, d).value).fold(0.0, f64::max)
 }
 
 /// Checks whether a part can move down by more than 1e-3.
@@ -41,15 +41,16 @@ fn falls(bodies: &Bodies, part: usize, others: &[usize], up: DVec3) -> bool {
     let mut workspace = Workspace::default();
     let mut rooms = others
         .iter()
-        .map(|&b| bodies.room([part, b], -up, None, StartOverlap::Refuse, &mut workspace));
+        .map(|&b| bodies.free_travel([part, b], -up, None, StartOverlap::Refuse, &mut workspace));
     rooms.all(|room| {
-        matches!(room, Room::Free) || matches!(room, Room::Blocked(s) if s.distance() > 1e-3)
+        matches!(room, FreeTravel::Free)
+            || matches!(room, FreeTravel::Blocked(s) if s.distance() > 1e-3)
     })
 }
 
 /// Returns the steps of the whole assembly, without those of removed groups.
 fn main_steps(plan: &Plan) -> Vec<(usize, &Step)> {
-    plan.steps.iter().enumerate().filter(|(_, step)| step.within.is_none()).collect()
+    plan.steps.iter().enumerate().filter(|(_, step)| step.group_step.is_none()).collect()
 }
 
 /// Checks each main step: it leaves some part, is free, and is about as short as the shortest direction. Returns the
@@ -77,7 +78,7 @@ fn check_steps(bodies: &Bodies, plan: &Plan, directions: &[DVec3], up: DVec3) ->
         assert!(own <= 1.1 * least + 1e-3, "step {k}: travel {own} exceeds the shortest {least}");
         let ground = |p: &usize| bodies.assembly().parts()[*p].solid().bounds().low.dot(up) < 1e-3;
         let mut kept =
-            left.iter().filter(|p| held.contains(p) && !plan.last.contains(p) && !ground(p));
+            left.iter().filter(|p| held.contains(p) && !plan.base.contains(p) && !ground(p));
         let dropped = kept.any(|&p| {
             let others: Vec<usize> = left.iter().copied().filter(|&q| q != p).collect();
             falls(bodies, p, &others, up)
@@ -94,8 +95,9 @@ fn check_exchanges(bodies: &Bodies, plan: &Plan, random: &mut Random) {
         let (mut done, mut left) =
             (vec![false; plan.steps.len()], (0..bodies.len()).collect::<Vec<_>>());
         for _ in 0..steps.len() {
-            let ready =
-                |(k, step): &&(usize, &Step)| !done[*k] && step.after.iter().all(|&j| done[j]);
+            let ready = |(k, step): &&(usize, &Step)| {
+                !done[*k] && step.predecessors.iter().all(|&j| done[j])
+            };
             let ready: Vec<_> = steps.iter().filter(ready).collect();
             let (k, step) = *ready[random.index(ready.len())];
             left.retain(|p| !step.parts.contains(p));
@@ -125,7 +127,7 @@ fn steps_are_short_and_commute_up_to_precedence() {
         let assembly = boxes(&mut random, count);
         let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
         let (plan, directions) = planned(&bodies, PlanOptions::default().with_samples(0));
-        assert!(plan.left.is_empty() && plan.last.len() == 1, "round {round}");
+        assert!(plan.remaining.is_empty() && plan.base.len() == 1, "round {round}");
         kept_up += check_steps(&bodies, &plan, &directions, DVec3::Z);
         steps += main_steps(&plan).len();
         check_exchanges(&bodies, &plan, &mut random);
@@ -187,12 +189,12 @@ fn identical_parts_leave_in_one_stage_and_lower_plate_stays() {
         let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
         let (plan, _) = planned(&bodies, PlanOptions::default().with_samples(0).with_up(up));
         let told: Vec<String> =
-            plan.stages().iter().map(|stage| plan.takes(&assembly, stage)).collect();
+            plan.stages().iter().map(|stage| plan.describe_stage(&assembly, stage)).collect();
         assert_eq!(told, ["2 x screw", "2 x screw", "4 x washer", "upper"], "round {round}");
-        assert_eq!(assembly.names(&plan.last), ["lower"]);
+        assert_eq!(assembly.part_names(&plan.base), ["lower"]);
         assert!(plan.steps.iter().all(|step| step.direction.dot(up) > 0.999_999));
         let upper = plan.steps.last().unwrap();
-        assert_eq!(upper.after.len(), 8, "all screws and washers must precede it");
+        assert_eq!(upper.predecessors.len(), 8, "all screws and washers must precede it");
     }
 }
 
@@ -209,13 +211,14 @@ fn removal_direction_follows_the_up_option() {
     let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
     for (up, order) in [(DVec3::Z, ["c", "b"]), (DVec3::NEG_Z, ["a", "b"])] {
         let (plan, _) = planned(&bodies, PlanOptions::default().with_up(up));
-        let names: Vec<&str> = plan.steps.iter().flat_map(|s| assembly.names(&s.parts)).collect();
+        let names: Vec<&str> =
+            plan.steps.iter().flat_map(|s| assembly.part_names(&s.parts)).collect();
         assert_eq!(names, order);
         assert!(plan.steps.iter().all(|step| step.direction == up));
     }
     let none = PlanOptions::default().with_up(DVec3::ZERO);
     let watch = Watch::default();
-    let matrix = Matrix::on_demand(&bodies, &[], &[true; 3], StartOverlap::Refuse);
+    let matrix = ContactMatrix::on_demand(&bodies, &[], &[true; 3], StartOverlap::Refuse);
     assert!(disassemble(&bodies, &matrix, &[], none, watch).is_err());
 }
 
@@ -260,7 +263,7 @@ fn shortcut_is_used_only_by_the_part_that_has_one() {
         let own = step.travel.value;
         assert!(own <= 1.5 * least, "travel {own} exceeds the shortest {least}");
         if own < 11.0 {
-            shorter.push(assembly.names(&step.parts).concat());
+            shorter.push(assembly.part_names(&step.parts).concat());
         }
     }
     assert_eq!(shorter, ["block_a"]);

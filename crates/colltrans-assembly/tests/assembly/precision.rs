@@ -68,9 +68,9 @@ fn stl(vertices: &[DVec3], faces: &[[usize; 3]]) -> Vec<u8> {
 /// Checks whether the parts are separated with their default tolerance, and remain whole with it.
 fn is_separable(assembly: &Assembly) -> bool {
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
-    let whole = (0..bodies.len()).all(|part| bodies.remark(part).is_none());
+    let whole = (0..bodies.len()).all(|part| bodies.shrink_defects(part).is_none());
     let plan = planned(&bodies, PlanOptions::default());
-    whole && bodies.overlapping().is_empty() && plan.stuck.is_empty()
+    whole && bodies.overlapping_pairs().is_empty() && plan.interlocked.is_empty()
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn default_tolerance_follows_written_digits() {
     };
     let assembly = read_parts(at, "obj", sunk);
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-    assert_eq!(bodies.overlapping(), [[0, 1]]);
+    assert_eq!(bodies.overlapping_pairs(), [[0, 1]]);
 }
 
 #[test]

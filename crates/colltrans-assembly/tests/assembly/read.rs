@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::common::*;
 use base64::Engine;
 use colltrans_assembly::plan::Plan;
-use colltrans_assembly::report::glb::animation;
+use colltrans_assembly::report::glb::plan_animation;
 use colltrans_assembly::{Assembly, Ignored};
 use colltrans_assembly_io::ReadError;
 use colltrans_assembly_io::read::{Geometry, ReadOptions, read};
@@ -33,7 +33,7 @@ fn open(path: impl AsRef<Path>) -> Result<Assembly, ReadError> {
 
 /// Returns the corners of a part's box.
 fn bounds(assembly: &Assembly, name: &str) -> [DVec3; 2] {
-    let bounds = assembly.parts()[assembly.index(name).unwrap()].solid().bounds();
+    let bounds = assembly.parts()[assembly.part_index(name).unwrap()].solid().bounds();
     [bounds.low, bounds.high]
 }
 
@@ -47,8 +47,8 @@ fn assert_bounds(found: [DVec3; 2], low: [f64; 3], high: [f64; 3]) {
 fn folder_is_read_in_natural_order() {
     let folder = folder(&[("p10.off", CUBE), ("p9.off", CUBE), ("notes.txt", "no mesh")]);
     let assembly = open(folder.path()).unwrap();
-    assert_eq!(assembly.names(&[0, 1]), ["p9", "p10"]);
-    assert_eq!(assembly.parts()[0].facets(), 6);
+    assert_eq!(assembly.part_names(&[0, 1]), ["p9", "p10"]);
+    assert_eq!(assembly.parts()[0].facet_count(), 6);
     assert!((assembly.parts()[0].solid().volume() - 1.0).abs() < 1e-12);
     assert_eq!(assembly.unit(), None);
 }
@@ -82,14 +82,14 @@ fn manifests_in_toml_and_json_place_parts() {
     for file in ["m.toml", "m.json"] {
         let assembly = open(folder.path().join(file)).unwrap();
         assert_eq!(assembly.unit(), Some("mm"));
-        assert_eq!(assembly.ignored(1, 0), Some(Ignored::Overlap));
-        assert_eq!(assembly.ignored(1, 2), Some(Ignored::Always));
-        assert_eq!(assembly.ignored(0, 2), None);
-        assert!(assembly.parts()[0].fixed());
+        assert_eq!(assembly.ignored_contacts(1, 0), Some(Ignored::Overlap));
+        assert_eq!(assembly.ignored_contacts(1, 2), Some(Ignored::Always));
+        assert_eq!(assembly.ignored_contacts(0, 2), None);
+        assert!(assembly.parts()[0].is_fixed());
         assert_bounds(bounds(&assembly, "a"), [3.0, 0.0, 0.0], [5.0, 2.0, 2.0]);
         assert_bounds(bounds(&assembly, "b"), [-1.0, -1.0, 0.0], [0.0, 0.0, 3.0]);
         assert_bounds(bounds(&assembly, "c"), [-1.0, 0.0, 0.0], [0.0, 1.0, 1.0]);
-        assert_eq!(assembly.parts()[1].facets(), 12);
+        assert_eq!(assembly.parts()[1].facet_count(), 12);
     }
 }
 
@@ -156,7 +156,7 @@ fn joint_values_place_links_of_robot() {
     assert!(message.contains("package://kit/gone.stl"), "{message}");
     options.skip_missing = true;
     let assembly = read(&file, &options).unwrap();
-    assert_eq!(assembly.names(&[0, 1]), ["base", "arm"]);
+    assert_eq!(assembly.part_names(&[0, 1]), ["base", "arm"]);
     assert_eq!(assembly.notes().len(), 1);
     // From x = 1 to 3, rotated to y, and raised by 1.
     assert_bounds(bounds(&assembly, "arm"), [-1.0, 1.0, 1.0], [0.0, 3.0, 2.0]);
@@ -194,7 +194,7 @@ fn entries_of_missing_parts_are_dropped_with_notes() {
     let files = [("m.toml", manifest), ("a.off", CUBE), ("b.off", CUBE)];
     let file = folder(&files);
     let path = file.path().join("m.toml");
-    assert!(matches!(open(&path), Err(ReadError::Missing { .. })));
+    assert!(matches!(open(&path), Err(ReadError::MissingMeshes { .. })));
     let options = ReadOptions::default().with_skip_missing(true);
     let assembly = read(&path, &options).unwrap();
     let wanted = [
@@ -221,7 +221,7 @@ fn scale_option_scales_matching_parts() {
     let scales = BTreeMap::from([("bolt_*".to_owned(), 25.4)]);
     let options = ReadOptions::default().with_scales(scales.clone());
     let assembly = read(file.path(), &options).unwrap();
-    let size = |k: usize| assembly.parts()[k].solid().bounds().size().x;
+    let size = |k: usize| assembly.parts()[k].solid().bounds().side_lengths().x;
     assert_eq!([0, 1, 2].map(size), [25.4, 25.4, 1.0]);
     for (name, factor) in [("nut", 1.0), ("lid", 0.0), ("lid", f64::NAN)] {
         let options = ReadOptions::default().with_scales(BTreeMap::from([(name.into(), factor)]));
@@ -238,9 +238,9 @@ fn written_glb_is_read_back() {
     let assembly = Assembly::new(parts).unwrap().with_unit("m");
     let folder = TemporaryFolder::new();
     let file = folder.path().join("a.glb");
-    std::fs::write(&file, animation(&assembly, &Plan::default())).unwrap();
+    std::fs::write(&file, plan_animation(&assembly, &Plan::default())).unwrap();
     let back = open(&file).unwrap();
-    assert_eq!(back.names(&[0, 1]), ["well", "cube"]);
+    assert_eq!(back.part_names(&[0, 1]), ["well", "cube"]);
     assert_eq!(back.unit(), Some("m"));
     // The z axis became the y axis.
     assert_bounds(bounds(&back, "cube"), [0.0, 0.0, -2.0], [1.0, 3.0, 0.0]);
@@ -264,7 +264,7 @@ fn items_of_3mf_package_are_placed_with_unit() {
     std::fs::write(&file, package(&model)).unwrap();
     let assembly = open(&file).unwrap();
     assert_eq!(assembly.unit(), Some("inch"));
-    assert_eq!(assembly.names(&[0, 1]), ["cube", "cube_2"]);
+    assert_eq!(assembly.part_names(&[0, 1]), ["cube", "cube_2"]);
     assert_bounds(bounds(&assembly, "cube"), [10.0, 0.0, 0.0], [12.0, 2.0, 2.0]);
     assert_bounds(bounds(&assembly, "cube_2"), [-1.0, 0.0, 0.0], [0.0, 1.0, 1.0]);
     std::fs::write(&file, package(&model.replace("objectid=\"2\"", "objectid=\"7\""))).unwrap();
@@ -322,7 +322,7 @@ fn gltf_accessors_beyond_buffers_are_rejected() {
         std::fs::write(&path, file(positions, indices).to_string()).unwrap();
         open(&path).map_err(|e| e.to_string())
     };
-    assert_eq!(read(3, 3).unwrap().names(&[0]), ["leaf"]);
+    assert_eq!(read(3, 3).unwrap().part_names(&[0]), ["leaf"]);
     let refused = |positions: usize, indices: usize, words: &str| {
         let message = read(positions, indices).unwrap_err();
         assert!(message.contains("node 0, mesh 0") && message.contains(words), "{message}");
@@ -340,7 +340,7 @@ fn hidden_and_empty_gltf_nodes_are_left_out_with_a_note() {
     let assembly = Assembly::new(parts.into()).unwrap().with_unit("m");
     let folder = TemporaryFolder::new();
     let path = folder.path().join("a.gltf");
-    let glb = animation(&assembly, &Plan::default());
+    let glb = plan_animation(&assembly, &Plan::default());
     let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
     let mut document: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
     let data = base64::engine::general_purpose::STANDARD.encode(&glb[28 + length..]);
@@ -361,7 +361,7 @@ fn hidden_and_empty_gltf_nodes_are_left_out_with_a_note() {
     document["extensionsRequired"] = serde_json::json!(["KHR_node_visibility"]);
     std::fs::write(&path, document.to_string()).unwrap();
     let assembly = open(&path).unwrap();
-    assert_eq!(assembly.names(&[0]), ["seen"]);
+    assert_eq!(assembly.part_names(&[0]), ["seen"]);
     assert_eq!(assembly.parts().len(), 1);
     assert_eq!(assembly.notes(), ["left out: hidden (hidden), lines (no triangles)"]);
 }
@@ -399,7 +399,7 @@ fn meshes_that_the_build_or_the_scene_does_not_place_are_named_in_a_note() {
     let parts =
         [0.0, 2.0].map(|x| part(&format!("at{x}"), &[cuboid([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0])]));
     let assembly = Assembly::new(parts.into()).unwrap().with_unit("m");
-    let glb = animation(&assembly, &Plan::default());
+    let glb = plan_animation(&assembly, &Plan::default());
     let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
     let mut document: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
     let data = base64::engine::general_purpose::STANDARD.encode(&glb[28 + length..]);

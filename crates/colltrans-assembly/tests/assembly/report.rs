@@ -7,15 +7,15 @@ use std::process::Command;
 use crate::common::{cuboid, part, stud, well};
 use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::report::html;
-use colltrans_assembly::{Assembly, Bodies, Fit, Question, Watch};
+use colltrans_assembly::{AnalysisRequest, Assembly, Bodies, Fit, Watch};
 
 /// Computes a plan and its report.
 fn plan_and_report(assembly: &Assembly, title: &str) -> (Plan, String) {
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
-    let options = PlanOptions::default().with_legs(4);
-    let question = Question::default().with_options(options);
-    let findings = question.ask(&bodies, Watch::default()).unwrap();
-    let page = html::page(&findings, title);
+    let options = PlanOptions::default().with_max_moves(4);
+    let question = AnalysisRequest::default().with_options(options);
+    let findings = question.analyse(&bodies, Watch::default()).unwrap();
+    let page = html::report_page(&findings, title);
     (findings.plan, page)
 }
 

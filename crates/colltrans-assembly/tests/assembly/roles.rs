@@ -1,12 +1,12 @@
 //! Pairs with a fit of their own, compared with bodies that all have this fit, and small machines.
 
 use colltrans::solid::{StartOverlap, Workspace};
-use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::matrix::ContactMatrix;
 use colltrans_assembly::plan::{Plan, PlanOptions};
-use colltrans_assembly::roles::{PairFit, Role, Tolerated};
+use colltrans_assembly::roles::{PairFit, PairTolerance, Role};
 use colltrans_assembly::start::Start;
-use colltrans_assembly::suggest::{applied, suggestions, told};
-use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Part, Piece, Room, Watch};
+use colltrans_assembly::suggest::{apply_suggestions, describe_suggestions, suggest_fits};
+use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, FreeTravel, Part, Piece, Watch};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{self as testkit, helical, prism};
@@ -55,9 +55,9 @@ fn pair_tolerance_affects_only_its_pair() {
             assert_eq!(bodies.overlaps(a, b), alike.overlaps(a, b));
             for d in directions {
                 for start in [StartOverlap::Refuse, StartOverlap::Ignore] {
-                    let room = bodies.room([a, b], d, None, start, &mut workspace);
-                    assert_eq!(room, alike.room([a, b], d, None, start, &mut workspace));
-                    let other = plain.room([a, b], d, None, start, &mut workspace);
+                    let room = bodies.free_travel([a, b], d, None, start, &mut workspace);
+                    assert_eq!(room, alike.free_travel([a, b], d, None, start, &mut workspace));
+                    let other = plain.free_travel([a, b], d, None, start, &mut workspace);
                     changed += usize::from(room != other);
                     asked += 1;
                 }
@@ -67,11 +67,12 @@ fn pair_tolerance_affects_only_its_pair() {
         let all = vec![true; 8];
         let watch = Watch::default();
         let both = [DVec3::X, DVec3::NEG_X];
-        let matrix = Matrix::new(&bodies, &both, &all, StartOverlap::Refuse, watch).unwrap();
-        for met in matrix.meetings(1) {
+        let matrix = ContactMatrix::new(&bodies, &both, &all, StartOverlap::Refuse, watch).unwrap();
+        for met in matrix.contacts_along(1) {
             let pair = [met.moving, met.fixed];
-            let room = bodies.room(pair, DVec3::NEG_X, None, StartOverlap::Refuse, &mut workspace);
-            assert!(room != Room::Free);
+            let room =
+                bodies.free_travel(pair, DVec3::NEG_X, None, StartOverlap::Refuse, &mut workspace);
+            assert!(room != FreeTravel::Free);
         }
     }
     assert!(asked > 8_000 && changed > 60, "{asked} {changed}");
@@ -101,9 +102,10 @@ fn pair_tolerance_overrides_chord_errors_of_its_pair_only() {
             assert_eq!(bodies.overlaps(a, b), other.overlaps(a, b));
             for d in [DVec3::X, DVec3::NEG_Z, random.direction()] {
                 let start = StartOverlap::Refuse;
-                let room = bodies.room([a, b], d, None, start, &mut workspace);
-                assert_eq!(room, other.room([a, b], d, None, start, &mut workspace));
-                changed += usize::from(room != alike.room([a, b], d, None, start, &mut workspace));
+                let room = bodies.free_travel([a, b], d, None, start, &mut workspace);
+                assert_eq!(room, other.free_travel([a, b], d, None, start, &mut workspace));
+                changed +=
+                    usize::from(room != alike.free_travel([a, b], d, None, start, &mut workspace));
                 asked += 1;
             }
         }
@@ -133,25 +135,25 @@ fn press_fit_is_removable_and_later_contacts_block() {
     for (fit, length) in [(PRESS, 0.027), (PairFit { tolerance: Some(0.2), ..PRESS }, 0.2)] {
         let with = plain.clone().with_pair([&["pin"], &["pl*"]], fit).unwrap();
         let bodies = Bodies::new(&with, Fit::Tolerance(0.002)).unwrap();
-        assert_eq!(bodies.tolerated([1, 0]), Some(Tolerated::Within(length)));
+        assert_eq!(bodies.tolerated_contacts([1, 0]), Some(PairTolerance::Within(length)));
         let plan = planned(&bodies);
         let step = plan.steps.iter().find(|step| step.parts == [1]).unwrap();
         // The collar is at the bottom.
         assert_eq!(step.direction, DVec3::NEG_Z);
-        assert_eq!(step.passed.len(), 1);
+        assert_eq!(step.tolerated.len(), 1);
         assert_eq!(
-            step.passed[0].words(&with),
+            step.tolerated[0].describe(&with),
             format!("pin and plate: press fit, tolerance {length}")
         );
-        assert!(step.ignored.is_empty() && plan.left == [0], "{:?}", plan.left);
+        assert!(step.ignored.is_empty() && plan.remaining == [0], "{:?}", plan.remaining);
         let (mut workspace, start) = (Workspace::default(), StartOverlap::Refuse);
-        let up = bodies.room([1, 0], DVec3::Z, None, start, &mut workspace);
-        let Room::Blocked(stop) = up else { panic!("the collar stops it") };
+        let up = bodies.free_travel([1, 0], DVec3::Z, None, start, &mut workspace);
+        let FreeTravel::Blocked(stop) = up else { panic!("the collar stops it") };
         assert!((stop.translation.value - 1.0).abs() < 1e-9 && stop.distance() <= 1.0, "{stop:?}");
     }
     // A general tolerance would let the cap sink into the plate by the same amount.
     let wide = Bodies::new(&plain, Fit::Tolerance(0.2)).unwrap();
-    assert!(!wide.overlaps(0, 1) && planned(&wide).left == [0]);
+    assert!(!wide.overlaps(0, 1) && planned(&wide).remaining == [0]);
 }
 
 #[test]
@@ -171,7 +173,7 @@ fn snap_fit_tolerates_only_early_contacts() {
         let assembly = assembly.unwrap();
         let bodies = Bodies::new(&assembly, Fit::Tolerance(0.0)).unwrap();
         let mut workspace = Workspace::default();
-        let room = bodies.room([0, 1], DVec3::X, None, StartOverlap::Refuse, &mut workspace);
+        let room = bodies.free_travel([0, 1], DVec3::X, None, StartOverlap::Refuse, &mut workspace);
         let expected = if gap >= bend {
             Some(gap)
         } else if both {
@@ -181,8 +183,8 @@ fn snap_fit_tolerates_only_early_contacts() {
         };
         seen[usize::from(gap < bend) + usize::from(gap < bend && both)] += 1;
         match (room, expected) {
-            (Room::Free, None) => (),
-            (Room::Blocked(stop), Some(at)) => {
+            (FreeTravel::Free, None) => (),
+            (FreeTravel::Blocked(stop), Some(at)) => {
                 assert!((stop.translation.value - at).abs() < 1e-9, "{stop:?}, {at}");
                 assert!(stop.distance() <= at);
             }
@@ -213,7 +215,7 @@ fn glued_parts_leave_as_one_and_endless_overlap_is_tolerated() {
     let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
     let plan = planned(&bodies);
     assert_eq!((plan.steps.len(), plan.steps[0].parts.clone()), (1, vec![1, 2]));
-    assert!(plan.stuck.is_empty() && plan.steps[0].passed.is_empty());
+    assert!(plan.interlocked.is_empty() && plan.steps[0].tolerated.is_empty());
     // A sheet through a block: no tolerance ends their overlap.
     let sheet = Mesh::new(
         vec![DVec3::new(1.2, 1.2, -1.0), DVec3::new(1.8, 1.2, -1.0), DVec3::new(1.5, 1.8, 3.0)],
@@ -225,9 +227,11 @@ fn glued_parts_leave_as_one_and_endless_overlap_is_tolerated() {
     let parts = vec![part("block", &[block]), Part::new("sheet", &[sheet]).unwrap()];
     let assembly = Assembly::new(parts).unwrap().with_pair([&["block"], &["sheet"]], soft).unwrap();
     let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
-    assert_eq!(bodies.tolerated([0, 1]), Some(Tolerated::Crossing));
+    assert_eq!(bodies.tolerated_contacts([0, 1]), Some(PairTolerance::Crossing));
     let plan = planned(&bodies);
-    assert!(plan.steps[0].passed[0].words(&assembly).contains("crossings at the start tolerated"));
+    assert!(
+        plan.steps[0].tolerated[0].describe(&assembly).contains("crossings at the start tolerated")
+    );
 }
 
 #[test]
@@ -246,7 +250,7 @@ fn thread_is_suggested_only_if_the_nut_surrounds_the_screw() {
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
         let start = Start::new(&bodies, Watch::default()).unwrap();
         assert_eq!(start.overlaps.len(), 1);
-        let found = suggestions(&bodies, &start);
+        let found = suggest_fits(&bodies, &start);
         let threads = found.iter().filter(|said| said.fit.role == Some(Role::Thread));
         assert_eq!(threads.count(), usize::from(threaded), "{found:?}");
     }
@@ -291,17 +295,17 @@ fn suggestions_classify_overlaps_and_make_them_removable() {
         let fit = Fit::default_for(&assembly);
         let bodies = Bodies::new(&assembly, fit).unwrap();
         let start = Start::new(&bodies, Watch::default()).unwrap();
-        let found = suggestions(&bodies, &start);
+        let found = suggest_fits(&bodies, &start);
         assert_eq!(found.len(), 1, "{name} {radius}");
-        assert_eq!(found[0].fit.role, role, "{name} {radius}: {}", found[0].why);
-        assert!(found[0].why.contains(why), "{}", found[0].why);
+        assert_eq!(found[0].fit.role, role, "{name} {radius}: {}", found[0].reason);
+        assert!(found[0].reason.contains(why), "{}", found[0].reason);
         assert!(planned(&bodies).steps.is_empty());
-        let next = applied(assembly.clone(), &found).unwrap();
+        let next = apply_suggestions(assembly.clone(), &found).unwrap();
         assert!(next.notes().iter().any(|note| note.contains("taken as suggested")));
-        assert_eq!(told(&assembly, &found).len(), 1);
+        assert_eq!(describe_suggestions(&assembly, &found).len(), 1);
         let bodies = Bodies::new(&next, fit).unwrap();
         let plan = planned(&bodies);
         assert_eq!(plan.steps.len(), 1, "{name} {radius}");
-        assert_eq!(plan.steps[0].passed[0].role, role);
+        assert_eq!(plan.steps[0].tolerated[0].role, role);
     }
 }

@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use crate::common::*;
-use colltrans_assembly::plan::{Leg, Moves, Plan, PlanOptions};
-use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Question, Watch, record};
+use colltrans_assembly::plan::{Leg, PathSearch, Plan, PlanOptions};
+use colltrans_assembly::{AnalysisRequest, Assembly, Bodies, Fit, Part, Piece, Watch, record};
 use colltrans_assembly_io::read::{ReadOptions, read};
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
@@ -25,10 +25,10 @@ fn check_moves(bodies: &Bodies, plan: &Plan) {
     let mut there = vec![true; bodies.len()];
     for (k, step) in plan.steps.iter().enumerate() {
         // A step within a group has only the remaining parts of the group around it.
-        let group = step.within.map(|w| &plan.steps[w].parts);
+        let group = step.group_step.map(|w| &plan.steps[w].parts);
         let inside = |p: usize| match group {
             Some(group) => {
-                let before = plan.steps[..k].iter().filter(|s| s.within == step.within);
+                let before = plan.steps[..k].iter().filter(|s| s.group_step == step.group_step);
                 group.contains(&p) && !before.into_iter().any(|s| s.parts.contains(&p))
             }
             None => there[p],
@@ -57,7 +57,7 @@ fn check_moves(bodies: &Bodies, plan: &Plan) {
         }
         let last = step.path.last().unwrap();
         assert_eq!((&last.parts, last.travel), (&step.parts, step.travel.value));
-        for leg in &step.back {
+        for leg in &step.return_legs {
             go(leg, &step.parts);
         }
         for &part in all.iter().filter(|p| !step.parts.contains(p)) {
@@ -68,7 +68,7 @@ fn check_moves(bodies: &Bodies, plan: &Plan) {
             step.parts.iter().all(|&p| (at[p] - first).length() < 1e-9),
             "the group must have no relative displacement"
         );
-        if step.within.is_none() {
+        if step.group_step.is_none() {
             step.parts.iter().for_each(|&p| there[p] = false);
         }
     }
@@ -104,15 +104,15 @@ fn slot() -> Assembly {
 fn default_options_find_a_path_of_two_moves() {
     let assembly = slot();
     let plan = planned(&assembly, PlanOptions::default());
-    assert!(plan.stuck.is_empty() && plan.left.is_empty());
+    assert!(plan.interlocked.is_empty() && plan.remaining.is_empty());
     let step = &plan.steps[0];
-    assert_eq!((&step.parts[..], step.path.len(), step.back.len()), (&[0][..], 2, 0));
+    assert_eq!((&step.parts[..], step.path.len(), step.return_legs.len()), (&[0][..], 2, 0));
     assert_eq!(step.path[0].direction, DVec3::X);
     assert_eq!(step.direction, DVec3::Z);
     // It moves up from 0.2 until it is above the lips, which end at 2.
     assert!((step.travel.value - 1.8).abs() < 1e-12, "{:?}", step.travel);
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-    let told = record::plan(&bodies, &plan);
+    let told = record::plan_json(&bodies, &plan);
     assert_eq!(told["plan"][0]["path"][0]["parts"][0], "key");
     assert!(told["plan"][0].get("back").is_none());
     assert_eq!((&told["last"][0], told["plan"].as_array().unwrap().len()), (&"plate".into(), 1));
@@ -120,9 +120,12 @@ fn default_options_find_a_path_of_two_moves() {
 
 #[test]
 fn one_leg_disables_the_path_search() {
-    let plan = planned(&slot(), PlanOptions::default().with_legs(1));
-    assert_eq!(plan.stuck[0].moves, Moves::NotAsked("the maximum number of moves is 1"));
-    assert_eq!(plan.left, [0, 1]);
+    let plan = planned(&slot(), PlanOptions::default().with_max_moves(1));
+    assert_eq!(
+        plan.interlocked[0].path_search,
+        PathSearch::NotSearched("the maximum number of moves is 1")
+    );
+    assert_eq!(plan.remaining, [0, 1]);
 }
 
 /// Returns a box with a cube in it and a lid that slides in grooves up to a stop.
@@ -138,22 +141,22 @@ fn lid_that_makes_room_returns_after_the_removal() {
     let assembly = sliding_lid();
     let plan = planned(&assembly, PlanOptions::default());
     let step = &plan.steps[0];
-    assert_eq!(assembly.names(&step.parts), ["cube"]);
-    assert_eq!(assembly.names(&step.path[0].parts), ["lid"]);
-    assert_eq!(step.back.len(), 1);
-    assert_eq!(step.back[0].parts, step.path[0].parts);
-    assert_eq!(step.back[0].direction, -step.path[0].direction);
-    assert_eq!(step.back[0].travel, step.path[0].travel);
+    assert_eq!(assembly.part_names(&step.parts), ["cube"]);
+    assert_eq!(assembly.part_names(&step.path[0].parts), ["lid"]);
+    assert_eq!(step.return_legs.len(), 1);
+    assert_eq!(step.return_legs[0].parts, step.path[0].parts);
+    assert_eq!(step.return_legs[0].direction, -step.path[0].direction);
+    assert_eq!(step.return_legs[0].travel, step.path[0].travel);
     // The stop holds the lid: this is proven, or reported with the extent of the search.
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     for (proofs, words) in
         [(true, "Nor do several straight moves"), (false, "Up to 2 moves, one after")]
     {
         let plan = planned(&assembly, PlanOptions::default().with_proofs(proofs));
-        let stuck = &plan.stuck[0];
-        assert_eq!(assembly.names(&stuck.parts), ["lid", "tray"]);
-        assert_eq!(stuck.proven.is_some(), proofs);
-        let because = stuck.because(&bodies);
+        let stuck = &plan.interlocked[0];
+        assert_eq!(assembly.part_names(&stuck.parts), ["lid", "tray"]);
+        assert_eq!(stuck.proof_cells.is_some(), proofs);
+        let because = stuck.explain(&bodies);
         assert!(because.contains(words), "{because}");
     }
 }
@@ -170,7 +173,7 @@ fn of_cubes(cubes: &Cubes) -> Assembly {
 fn base_of(assembly: &Assembly, parts: &[usize]) -> usize {
     let key = |part: usize| {
         let solid = assembly.parts()[part].solid();
-        let (size, height) = (solid.bounds().size(), solid.bounds().center().z);
+        let (size, height) = (solid.bounds().side_lengths(), solid.bounds().center().z);
         let area = size.x * size.y + size.y * size.z + size.z * size.x;
         [size.element_product(), area, solid.volume(), -height].map(|x| x as f32)
     };
@@ -182,8 +185,8 @@ fn base_of(assembly: &Assembly, parts: &[usize]) -> usize {
 fn check_base_is_stationary(assembly: &Assembly, plan: &Plan) {
     let all: Vec<usize> = (0..assembly.parts().len()).collect();
     for (k, step) in plan.steps.iter().enumerate() {
-        let base = base_of(assembly, step.within.map_or(&all, |w| &plan.steps[w].parts));
-        let mut legs = step.path.iter().chain(&step.back);
+        let base = base_of(assembly, step.group_step.map_or(&all, |w| &plan.steps[w].parts));
+        let mut legs = step.path.iter().chain(&step.return_legs);
         assert!(!step.parts.contains(&base), "step {k} takes the base {base}: {plan:?}");
         assert!(legs.all(|leg| !leg.parts.contains(&base)), "step {k} moves {base}: {plan:?}");
     }
@@ -203,13 +206,17 @@ fn selected_part_moves_even_if_it_is_the_largest() {
     );
     let assembly = Assembly::new(vec![key, slot().parts()[1].clone()]).unwrap();
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-    let question = Question::default().with_wanted(vec![0]);
-    let plan = question.ask(&bodies, Watch::default()).unwrap().plan;
+    let question = AnalysisRequest::default().with_selected(vec![0]);
+    let plan = question.analyse(&bodies, Watch::default()).unwrap().plan;
     let [step] = &plan.steps[..] else { panic!("one step: {plan:?}") };
-    assert_eq!((&step.parts[..], &plan.last[..], step.path.len()), (&[0][..], &[1][..], 2));
+    assert_eq!((&step.parts[..], &plan.base[..], step.path.len()), (&[0][..], &[1][..], 2));
     assert!(step.path.iter().all(|leg| leg.parts == [0]), "{plan:?}");
     assert_eq!((step.path[0].direction, step.direction), (DVec3::X, DVec3::Z));
-    assert!(plan.wanted.as_ref().is_some_and(|wanted| wanted.out && wanted.others.is_empty()));
+    assert!(
+        plan.selection
+            .as_ref()
+            .is_some_and(|wanted| wanted.is_complete && wanted.others.is_empty())
+    );
 }
 
 #[test]
@@ -221,9 +228,9 @@ fn random_puzzles_agree_with_exhaustive_cube_moves() {
     for case in 0..150 {
         let cubes = Cubes::random(&mut random);
         let assembly = of_cubes(&cubes);
-        let plan = planned(&assembly, PlanOptions::default().with_legs(12).with_samples(0));
-        let (expected, level) = (cubes.comes_apart(), cubes.level());
-        assert_eq!(plan.stuck.is_empty(), expected, "case {case}: {cubes:?} {plan:?}");
+        let plan = planned(&assembly, PlanOptions::default().with_max_moves(12).with_samples(0));
+        let (expected, level) = (cubes.can_separate(), cubes.level());
+        assert_eq!(plan.interlocked.is_empty(), expected, "case {case}: {cubes:?} {plan:?}");
         check_base_is_stationary(&assembly, &plan);
         if let Some(level) = level {
             let first = plan.steps[0].path.len();
@@ -244,14 +251,16 @@ fn collected(name: &str) -> Option<Assembly> {
 #[test]
 fn burr_of_level_six_is_disassembled_by_six_moves() {
     let Some(assembly) = collected("burr_p3_19") else { return };
-    let plan = planned(&assembly, PlanOptions::default().with_legs(12).with_samples(0));
-    assert!(plan.left.is_empty() && plan.stuck.is_empty());
+    let plan = planned(&assembly, PlanOptions::default().with_max_moves(12).with_samples(0));
+    assert!(plan.remaining.is_empty() && plan.interlocked.is_empty());
     check_base_is_stationary(&assembly, &plan);
     assert_eq!(plan.steps[0].path.len(), 6);
     let taken: usize = plan.steps.iter().filter(|s| s.parts.len() == 1).count();
-    assert!(taken + plan.last.len() >= 5, "every piece must be removed: {:?}", plan.steps);
+    assert!(taken + plan.base.len() >= 5, "every piece must be removed: {:?}", plan.steps);
     // Two moves do not suffice, and the plan reports this.
     let plan = planned(&assembly, PlanOptions::default().with_samples(0));
-    let Moves::NotFound { legs: 2, searched } = plan.stuck[0].moves else { panic!("{plan:?}") };
+    let PathSearch::NotFound { legs: 2, searched } = plan.interlocked[0].path_search else {
+        panic!("{plan:?}")
+    };
     assert!(searched.complete && searched.places > 1, "{searched:?}");
 }

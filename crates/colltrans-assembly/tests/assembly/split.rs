@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::common::{CUBE, mesh_of_3mf, package};
 use colltrans_assembly::plan::Plan;
-use colltrans_assembly::{Assembly, Bodies, Fit, Part, Room};
+use colltrans_assembly::{Assembly, Bodies, Fit, FreeTravel, Part};
 use colltrans_assembly_io::ReadError;
 use colltrans_assembly_io::read::{ReadOptions, Split, read_from};
 use colltrans_testkit::shapes::{Mesh, block};
@@ -25,7 +25,7 @@ fn open(name: &str, files: &Files, split: Split) -> Result<Assembly, ReadError> 
 
 /// Returns the names of the parts with their numbers of facets.
 fn parts(assembly: &Assembly) -> Vec<(&str, usize)> {
-    assembly.parts().iter().map(|part| (part.name(), part.facets())).collect()
+    assembly.parts().iter().map(|part| (part.name(), part.facet_count())).collect()
 }
 
 fn cube(low: f64, high: f64) -> Mesh {
@@ -117,7 +117,7 @@ fn manifest_splits_each_part_on_its_own() {
     ]);
     let read = open("m.toml", &files, Split::Auto).unwrap();
     assert_eq!(parts(&read), [("a", 12), ("b/x", 6), ("b/y", 6)]);
-    assert!(read.parts().iter().skip(1).all(Part::fixed));
+    assert!(read.parts().iter().skip(1).all(Part::is_fixed));
     assert_eq!(read.parts()[2].solid().bounds().low.to_array(), [4.0, 4.0, 13.0]);
     let all = open("m.toml", &files, Split::Bodies).unwrap();
     assert_eq!(parts(&all), [("a/x", 6), ("a/y", 6), ("b/x", 6), ("b/y", 6)]);
@@ -233,16 +233,24 @@ fn converter_extras_of_glb_nodes_are_read() {
     assert!((errors[0] - 0.02).abs() < 1e-12 && (errors[1] - 0.01).abs() < 1e-12);
     // The tolerance of a pair is the sum of both chord errors, plus a term for the last digits.
     let Fit::Chords { base, largest } = Fit::default_for(&found) else { panic!("no chord errors") };
-    assert!((largest - 0.04 - base).abs() < 1e-12 && base == found.size() / f64::from(1 << 21));
+    assert!(
+        (largest - 0.04 - base).abs() < 1e-12
+            && base == found.coordinate_size() / f64::from(1 << 21)
+    );
     // The plate moves further down to the screw by the amount by which both are shrunk.
     let bodies = Bodies::new(&found, Fit::default_for(&found)).unwrap();
     let mut workspace = colltrans::solid::Workspace::default();
     let start = colltrans::solid::StartOverlap::Refuse;
-    let Room::Blocked(stop) = bodies.room([1, 0], glam::DVec3::NEG_Z, None, start, &mut workspace)
+    let FreeTravel::Blocked(stop) =
+        bodies.free_travel([1, 0], glam::DVec3::NEG_Z, None, start, &mut workspace)
     else {
         panic!("the screw must block the plate");
     };
-    assert!((stop.displaced.value - 2000.03 - base).abs() < 1e-6, "{:?}", stop.displaced);
+    assert!(
+        (stop.shrunk_translation.value - 2000.03 - base).abs() < 1e-6,
+        "{:?}",
+        stop.shrunk_translation
+    );
     assert!((stop.translation.value - 2000.0).abs() < 1e-6);
     // Other programs may store arbitrary data in these extras.
     let others = json!([{"mesh": 0, "extras": {"colltrans": 7}, "children": [1]}, {"mesh": 0, "extras": [1]}]);
@@ -264,7 +272,7 @@ fn written_glb_has_the_axes_and_lengths_of_its_source() {
         &glb(&nodes, &serde_json::json!({"version": "2.0"})),
     )
     .unwrap();
-    let written = colltrans_assembly::report::glb::animation(&first, &Plan::default());
+    let written = colltrans_assembly::report::glb::plan_animation(&first, &Plan::default());
     let again = colltrans_assembly_io::read::glb("b.glb", &written).unwrap();
     let bounds = |assembly: &Assembly| assembly.parts()[0].solid().bounds();
     assert_eq!(
@@ -273,7 +281,7 @@ fn written_glb_has_the_axes_and_lengths_of_its_source() {
     );
     // An assembly with z up is rotated in glTF, which is in metres.
     let z = first.with_up(glam::DVec3::Z).with_unit("mm");
-    let written = colltrans_assembly::report::glb::animation(&z, &Plan::default());
+    let written = colltrans_assembly::report::glb::plan_animation(&z, &Plan::default());
     let low = bounds(&colltrans_assembly_io::read::glb("b.glb", &written).unwrap()).low;
     assert!((low - glam::DVec3::new(0.004, 0.006, -0.007)).length() < 1e-9, "{low}");
 }

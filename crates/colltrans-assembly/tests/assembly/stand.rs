@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use colltrans::solid::StartOverlap;
-use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::matrix::ContactMatrix;
 use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
 use colltrans_testkit::random::Random;
@@ -64,9 +64,10 @@ fn planned(assembly: &Assembly, up: DVec3) -> Plan {
     let (u, v) = up.any_orthonormal_pair();
     let directions = [up, -up, u, -u, v, -v];
     let (all, watch) = (vec![true; bodies.len()], Watch::default());
-    let matrix = Matrix::new(&bodies, &directions, &all, StartOverlap::Refuse, watch).unwrap();
+    let matrix =
+        ContactMatrix::new(&bodies, &directions, &all, StartOverlap::Refuse, watch).unwrap();
     let options =
-        PlanOptions::default().with_samples(0).with_proofs(false).with_legs(1).with_up(up);
+        PlanOptions::default().with_samples(0).with_proofs(false).with_max_moves(1).with_up(up);
     disassemble(&bodies, &matrix, &[], options, watch).unwrap()
 }
 
@@ -103,7 +104,7 @@ fn falling_and_tipping_parts_match_rectangles() {
         }
         let plan = planned(&assembly, up);
         let mut left: Vec<usize> = (0..boxes.len()).collect();
-        for step in plan.steps.iter().filter(|step| step.within.is_none()) {
+        for step in plan.steps.iter().filter(|step| step.group_step.is_none()) {
             let before = left.clone();
             left.retain(|part| !step.parts.contains(part));
             let carried = |part: &&usize| {
@@ -129,8 +130,13 @@ fn falling_and_tipping_parts_match_rectangles() {
                     .all(|left| support_margin(&boxes, *part, left).is_none_or(|m| m.abs() >= 1e-4))
             };
             let reported: Vec<usize> = reported.into_iter().filter(sure).collect();
-            assert_eq!((&step.falls, &reported), (&fall, &tip), "round {round}, {:?}", step.parts);
-            if assembly.constraints().before().is_empty() {
+            assert_eq!(
+                (&step.falling, &reported),
+                (&fall, &tip),
+                "round {round}, {:?}",
+                step.parts
+            );
+            if assembly.constraints().order_pairs().is_empty() {
                 assert!(fall.is_empty() && tip.is_empty(), "all boxes can be removed upwards");
             }
             falls += fall.len();

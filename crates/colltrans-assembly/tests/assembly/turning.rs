@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
-use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::candidates::{CandidateOptions, find_candidates};
+use colltrans_assembly::liaisons::find_liaisons;
+use colltrans_assembly::matrix::ContactMatrix;
 use colltrans_assembly::plan::{Leg, Plan, PlanOptions, Turn, disassemble};
 use colltrans_assembly::roles::{PairFit, Role};
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch, record};
@@ -52,17 +52,19 @@ fn bolted(screw: &[Piece], nut: &[Piece]) -> Assembly {
 
 fn planned(bodies: &Bodies) -> Plan {
     let watch = Watch::default();
-    let touching = liaisons(bodies, watch).unwrap();
-    let choice = Choice::default().with_given(vec![DVec3::Z, DVec3::NEG_Z]).with_search(false);
-    let found = candidates(bodies, &touching, &choice).unwrap();
+    let touching = find_liaisons(bodies, watch).unwrap();
+    let choice =
+        CandidateOptions::default().with_given(vec![DVec3::Z, DVec3::NEG_Z]).with_search(false);
+    let found = find_candidates(bodies, &touching, &choice).unwrap();
     let (all, options) = (vec![true; bodies.len()], PlanOptions::default().with_samples(0));
-    let matrix = Matrix::new(bodies, &found.directions(), &all, options.start, watch).unwrap();
+    let matrix =
+        ContactMatrix::new(bodies, &found.directions(), &all, options.start, watch).unwrap();
     disassemble(bodies, &matrix, &found.finer, options.with_proofs(false), watch).unwrap()
 }
 
 /// Returns the turn of the only step of a complete plan.
 fn turn(plan: &Plan) -> (&Leg, &Turn) {
-    assert!(plan.stuck.is_empty() && plan.steps.len() == 1, "{plan:?}");
+    assert!(plan.interlocked.is_empty() && plan.steps.len() == 1, "{plan:?}");
     let leg = &plan.steps[0].path[0];
     (leg, leg.turn.as_ref().unwrap())
 }
@@ -84,7 +86,7 @@ fn screw_with_play_is_unscrewed_without_extra_tolerance() {
         let plan = planned(&Bodies::new(&assembly, FIT).unwrap());
         let (leg, turn) = turn(&plan);
         assert!(turn.proof.as_ref().is_ok_and(|proof| proof.tolerance == 1e-6), "{turn:?}");
-        assert_eq!((turn.phase, turn.aside), (0.0, DVec3::ZERO));
+        assert_eq!((turn.initial_turns, turn.offset), (0.0, DVec3::ZERO));
         // From one end of the screw to the other end of the nut, and hardly farther: the axis is computed from
         // facets.
         let way = 3.0 * pitch.abs();
@@ -109,7 +111,7 @@ fn thread_without_play_needs_the_chord_tolerance() {
     let said = PairFit { tolerance: Some(1e-4), ..THREAD };
     let tight = assembly.with_pair([&["screw"], &["nut"]], said).unwrap();
     let plan = planned(&Bodies::new(&tight, FIT).unwrap());
-    let why = plan.steps[0].turn().unwrap().proof.clone().unwrap_err();
+    let why = plan.steps[0].first_turn().unwrap().proof.clone().unwrap_err();
     assert!(why.contains("the maximum tolerance is 1.00e-4"), "{why}");
 }
 
@@ -123,10 +125,10 @@ fn misaligned_screw_starts_from_its_best_pose() {
         let plan = planned(&bodies);
         let (leg, turn) = turn(&plan);
         let sense = leg.direction.z * if plan.steps[0].parts == [0] { 1.0 } else { -1.0 };
-        assert!((turn.phase * sense + by).abs() < 0.1, "{turn:?}");
-        assert!((turn.aside.length() - aside.length()).abs() < 0.05, "{turn:?}");
+        assert!((turn.initial_turns * sense + by).abs() < 0.1, "{turn:?}");
+        assert!((turn.offset.length() - aside.length()).abs() < 0.05, "{turn:?}");
         check_turn_is_free(&assembly, &plan);
-        let told = record::plan(&bodies, &plan);
+        let told = record::plan_json(&bodies, &plan);
         let leg = &told["plan"][0]["path"][0]["turn"];
         assert_eq!(leg["proof"]["tolerance"], 1e-6);
         assert!((leg["pitch"].as_f64().unwrap() - 1.0).abs() < 0.01);
@@ -169,8 +171,8 @@ fn identical_screws_form_one_stage() {
     let plan = planned(&bodies);
     let stages = plan.stages();
     assert_eq!((stages.len(), plan.steps.len()), (1, 2));
-    assert_eq!(plan.takes(&assembly, &stages[0]), "2 x screw");
-    assert!(plan.steps.iter().all(|step| step.turn().unwrap().proof.is_ok()));
+    assert_eq!(plan.describe_stage(&assembly, &stages[0]), "2 x screw");
+    assert!(plan.steps.iter().all(|step| step.first_turn().unwrap().proof.is_ok()));
 }
 
 #[test]
@@ -182,10 +184,10 @@ fn moved_point_follows_the_screw_motion() {
     );
     let (leg, turn) = turn(&plan);
     let p = DVec3::new(5.0, 1.0, 2.0);
-    let angle = TAU * (turn.phase + turn.turns * 0.5);
+    let angle = TAU * (turn.initial_turns + turn.turns * 0.5);
     let wanted =
         DQuat::from_axis_angle(leg.direction, angle) * p + leg.direction * (leg.travel / 2.0);
-    assert!(leg.moved(p, 0.5).distance(wanted) < 0.01, "{leg:?}");
+    assert!(leg.move_point(p, 0.5).distance(wanted) < 0.01, "{leg:?}");
 }
 
 /// Returns a socket whose ring blocks two lugs except at a slot at an angle `at`, slightly wider than the lugs.

@@ -11,7 +11,7 @@ use crate::common::{CUBE, mesh_of_3mf, package};
 use allocation_counter::measure;
 use base64::Engine;
 use colltrans_assembly::plan::Plan;
-use colltrans_assembly::report::glb::animation;
+use colltrans_assembly::report::glb::plan_animation;
 use colltrans_assembly::{Assembly, Bodies, Fit};
 use colltrans_assembly_io::ReadError;
 use colltrans_assembly_io::read::{ReadOptions, Split, read, read_from};
@@ -108,7 +108,7 @@ fn part_has_colour_of_its_largest_primitive() {
         assert!((0..3).all(|k| (found[k] - known[k]).abs() < 1e-3), "{found:?} {known:?}");
     };
     let read = coloured(&materials, [json!(0), json!(1), json!(1)]);
-    let written = animation(&read, &Plan::default());
+    let written = plan_animation(&read, &Plan::default());
     for assembly in [&read, &colltrans_assembly_io::read::glb("b.glb", &written).unwrap()] {
         near(assembly.parts()[0].colour(), [1.0, 0.0, 0.5]);
         near(assembly.parts()[1].colour(), [0.0, 1.0, 0.0]);
@@ -531,7 +531,7 @@ fn invalid_3mf_files_and_unknown_extensions_are_rejected() {
         "a.3mf",
         &[("a.3mf", package(&[("3D/3dmodel.model", model(other, &sliced, item))]))],
     );
-    assert_eq!(read.unwrap().parts()[0].facets(), 12);
+    assert_eq!(read.unwrap().parts()[0].facet_count(), 12);
 }
 
 #[test]

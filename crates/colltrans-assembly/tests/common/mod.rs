@@ -10,7 +10,7 @@ use colltrans::solid::{SolidCast, SolidOptions};
 use colltrans::{Cast, Pose, Solid};
 use colltrans_assembly::plan::{Plan, PlanOptions, Step};
 use colltrans_assembly::suggest::Suggestion;
-use colltrans_assembly::{Assembly, Bodies, Part, Piece, Question, Watch};
+use colltrans_assembly::{AnalysisRequest, Assembly, Bodies, Part, Piece, Watch};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::block;
@@ -43,15 +43,15 @@ pub fn mesh_of_3mf(corner: [f64; 3]) -> String {
 
 /// Computes the plan along directions that are found automatically.
 pub fn planned(bodies: &Bodies, options: PlanOptions) -> Plan {
-    let question = Question::default().with_options(options);
-    question.ask(bodies, Watch::default()).unwrap().plan
+    let question = AnalysisRequest::default().with_options(options);
+    question.analyse(bodies, Watch::default()).unwrap().plan
 }
 
 /// Returns the suggestions for overlapping parts.
 pub fn suggested(bodies: &Bodies) -> Vec<Suggestion> {
-    let options = PlanOptions::default().with_proofs(false).with_legs(1);
-    let question = Question::default().with_options(options);
-    question.ask(bodies, Watch::default()).unwrap().suggestions
+    let options = PlanOptions::default().with_proofs(false).with_max_moves(1);
+    let question = AnalysisRequest::default().with_options(options);
+    question.analyse(bodies, Watch::default()).unwrap().suggestions
 }
 
 /// Asserts that a step that unscrews parts is free of `others`: the motion has a certificate that verifies,
@@ -61,19 +61,19 @@ pub fn turns_freely(assembly: &Assembly, step: &Step, others: &[usize]) {
     let turn = leg.turn.as_ref().unwrap();
     let tolerance = turn.proof.as_ref().unwrap().tolerance;
     let options = SolidOptions::default().with_tolerance(tolerance);
-    let motion = leg.motion().unwrap();
+    let motion = leg.to_motion().unwrap();
     for (moving, fixed) in step.parts.iter().flat_map(|a| others.iter().map(move |b| (a, b))) {
         let [own, other] = [moving, fixed].map(|k| assembly.parts()[*k].solid());
-        let cast = MotionCast::new(own.along(&motion), other.at(Pose::IDENTITY)).unwrap();
-        let cast = cast.tolerating(tolerance).unwrap();
+        let cast = MotionCast::new(own.with_motion(&motion), other.at(Pose::IDENTITY)).unwrap();
+        let cast = cast.with_tolerance(tolerance).unwrap();
         let MotionOutcome::Free(free) = cast.certified_first_contact().unwrap() else {
             panic!("{moving} meets {fixed}")
         };
         assert_eq!(cast.verify(&free.proof).unwrap(), [1.0, f64::INFINITY]);
         for k in 0..=60 {
             let (share, beyond) = ((f64::from(k) / 45.0).min(1.0), f64::from(k - 45).max(0.0));
-            let matrix = DMat3::from_quat(turn.rotation(leg, share));
-            let by = leg.moved(DVec3::ZERO, share) + step.direction * 0.3 * beyond;
+            let matrix = DMat3::from_quat(turn.rotation_at(leg, share));
+            let by = leg.move_point(DVec3::ZERO, share) + step.direction * 0.3 * beyond;
             let pose = Pose::from_matrix(matrix, by).unwrap();
             let cast = Cast::<Solid>::new(own.at(pose), other.at(Pose::IDENTITY), DVec3::Z);
             let cast = cast.unwrap().with_options(options).unwrap();

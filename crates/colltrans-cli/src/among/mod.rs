@@ -11,7 +11,7 @@ use colltrans::record::{
     Dents, NearestRecord, PairQuestion, SceneClearanceRecord, SceneWithinRecord,
 };
 use colltrans::solid::{SolidOptions, StartOverlap};
-use colltrans::{Among, ObstacleId, Options, Pose, ProofFile, ProofFileError};
+use colltrans::{ObstacleId, Options, Pose, ProofFile, ProofFileError, SceneQuery};
 use serde::Serialize;
 
 use crate::args::{ClearanceArguments, PlaceArguments, PlacedArguments};
@@ -34,7 +34,7 @@ struct SceneRequest<'a> {
 /// Answers `colltrans distance` and `within` for a scene.
 ///
 /// # Errors
-/// The question is a depth, which two bodies have, or the query fails.
+/// The question is a depth, which is defined only for two bodies, or the query fails, or an output cannot be written.
 pub(crate) fn answer_placed(
     arguments: &PlacedArguments,
     question: PairQuestion,
@@ -57,9 +57,9 @@ pub(crate) fn answer_placed(
         save_proof: arguments.save_proof.as_ref(),
     };
     let (scene, targets) = request.load(&arguments.places)?;
-    let among = Among::new(scene.moving.body.at(request.pose), &scene.obstacles)?;
+    let among = SceneQuery::new(scene.moving.body.at(request.pose), &scene.obstacles)?;
     if let PairQuestion::Within(length) = question {
-        let mut record = SceneWithinRecord::of(&among.within(length)?, &among);
+        let mut record = SceneWithinRecord::from_nearby(&among.within(length)?, &among);
         for nearby in record.closer.iter_mut().flatten().chain(&mut record.undecided) {
             nearby.fixed = scene.name(nearby.obstacle);
             nearby.dent = scene.dent(nearby.obstacle);
@@ -71,7 +71,7 @@ pub(crate) fn answer_placed(
     // The scene has a file, and each file at least one obstacle.
     let found = among.nearest()?.ok_or(Failure::new(Code::Input, "the scene has no obstacles"))?;
     let error = scene.length_error(request.pose, found.obstacle);
-    let mut record = NearestRecord::of(&found, &among);
+    let mut record = NearestRecord::from_nearest(&found, &among);
     record.fixed = scene.name(found.obstacle);
     let prove = || ProofFile::of_nearest(&among);
     let line = scene.line_of(record, Some(found.obstacle));
@@ -105,7 +105,7 @@ pub(crate) fn answer_clearance(arguments: &ClearanceArguments) -> Result<(), Fai
     };
     let among = scene_query(&scene, &request, arguments, tolerance)?;
     let found = among.clearance(direction)?;
-    let mut record = SceneClearanceRecord::of(&found, &among, direction);
+    let mut record = SceneClearanceRecord::from_clearance(&found, &among, direction);
     let obstacle = record.obstacle;
     (record.tolerance, record.fixed) = (tolerance, obstacle.and_then(|id| scene.name(id)));
     let error = obstacle.map_or(0.0, |obstacle| scene.length_error(request.pose, obstacle));
@@ -124,19 +124,19 @@ fn scene_query<'a>(
     request: &SceneRequest<'_>,
     arguments: &ClearanceArguments,
     tolerance: Option<f64>,
-) -> Result<Among<'a>, Failure> {
+) -> Result<SceneQuery<'a>, Failure> {
     let pair = &arguments.pair;
     let ignores = arguments.ignore_start_overlaps;
     let start = if ignores { StartOverlap::Ignore } else { StartOverlap::Refuse };
     let options = Options::default()
         .with_solver(pair.solver)
         .with_graze_tolerance(pair.graze_tolerance)
-        .with_keep(pair.keep);
+        .with_min_gap(pair.min_gap);
     let of_solids = SolidOptions::default()
         .with_tolerance(tolerance)
         .with_start_overlap(start)
-        .with_keep(pair.keep);
-    let among = Among::new(scene.moving.body.at(request.pose), &scene.obstacles)?;
+        .with_min_gap(pair.min_gap);
+    let among = SceneQuery::new(scene.moving.body.at(request.pose), &scene.obstacles)?;
     Ok(among.with_options(options)?.with_solid_options(of_solids))
 }
 
@@ -161,7 +161,7 @@ impl Scene {
     /// Returns the line of a record, with the dents of the moving body and of an obstacle.
     fn line_of<R>(&self, record: R, obstacle: Option<ObstacleId>) -> Line<R> {
         let fixed = obstacle.and_then(|obstacle| self.dent(obstacle));
-        Line { dents: Dents::of([self.moving.dent, fixed]), ..Line::from_record(record) }
+        Line { dents: Dents::from_depths([self.moving.dent, fixed]), ..Line::from_record(record) }
     }
 }
 

@@ -9,7 +9,7 @@ use colltrans::solid::{AsSolid, SolidCast, StartOverlap};
 use colltrans::{
     Aabb, AnyBody, AnyPlaced, ByKind, ObstacleId, Obstacles, Placed, Pose, QueryError, Solid,
 };
-use colltrans_mesh::body::{BodyOptions, between};
+use colltrans_mesh::body::{BodyOptions, cast_between};
 use serde::Deserialize;
 
 use crate::args::{BodyArguments, BodyMode};
@@ -118,7 +118,7 @@ impl Scene {
             let placed = [as_solid(moving)?, as_solid(body.at(obstacle_pose))?];
             let precisions = [self.moving.precision, self.precisions[id as usize]];
             let refuse = StartOverlap::Refuse;
-            let cast = between(placed[0], placed[1], direction, precisions, None, refuse)?;
+            let cast = cast_between(placed[0], placed[1], direction, precisions, None, refuse)?;
             largest = Some(largest.unwrap_or_default().max(cast.tolerance()));
         }
         Ok(largest)
@@ -235,7 +235,7 @@ fn as_solid(placed: AnyPlaced<'_>) -> Result<Placed<'_, Solid>, QueryError> {
 fn max_coordinate(body: &AnyBody, pose: Pose) -> f64 {
     let Aabb { low, high } = match body {
         AnyBody::Convex(body) => {
-            body.vertices().iter().fold(Aabb::EMPTY, |all, &v| all.join(&Aabb { low: v, high: v }))
+            body.vertices().iter().fold(Aabb::EMPTY, |all, &v| all.union(&Aabb { low: v, high: v }))
         }
         AnyBody::Solid(body) => body.bounds(),
     };

@@ -84,7 +84,7 @@ pub(super) fn clearance_text(
         };
         push_line(&mut text, "tolerance", &format!("{} ({source})", number(tolerance)));
     }
-    push_min_gap(&mut text, record.keep);
+    push_min_gap(&mut text, record.min_gap);
     text
 }
 

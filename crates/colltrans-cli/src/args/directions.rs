@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use colltrans::free::FreeOptions;
+use colltrans::removal::directions::FreeOptions;
 use colltrans_mesh::body::BodyOptions;
 
 use super::{BodyArguments, BodyMode, InputPair, PlaceArguments, length, proof};

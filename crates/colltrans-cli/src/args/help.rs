@@ -51,8 +51,9 @@ fn indent(line: &str) -> usize {
     line.len() - line.trim_start().len()
 }
 
-/// Returns the indent of the second and later lines of a paragraph. If the first line explains a word, this is the
-/// column of the explanation.
+/// Returns the indent of the second and later lines of a paragraph. If the first line is indented and has at least two
+/// blanks between a word and its explanation, this is the column of the explanation. Otherwise it is the indent of the
+/// first line, with one more column after `{`. For a command it is always the indent of the first line and two more.
 fn hanging_indent(line: &str) -> usize {
     let at = indent(line);
     let body = &line[at..];
@@ -107,7 +108,7 @@ pub(super) const SEE_ALL: &str = "\
 
 /// Begins the topic of file formats; the names of the mesh formats follow from the code.
 fn mesh_files() -> String {
-    format!("Mesh files: {}, recognised by the extension. {VERTICES}", Format::names("and"))
+    format!("Mesh files: {}, recognised by the extension. {VERTICES}", Format::list_names("and"))
 }
 
 /// Returns the topic `colltrans help files`.
@@ -300,7 +301,7 @@ pub(super) const MOTION_NOTES: &str = "\
 Answers:
   contact      the bodies first touch at a time between two bounds
   grazing      they come nearer than rounding resolves; nothing is stated about later times
-  free         they never touch; with --keep never come as near, with --tolerance never overlap by more
+  free         they never touch; with --min_gap never come as near, with --tolerance never overlap by more
   overlapping  they overlap when the motion begins
   blocked      with --clearance, instead of contact and grazing: free until the first time
 Of several meshes it is the first contact of any pair.
@@ -357,7 +358,7 @@ Examples:
   Is this path free for the links and two meshes of the scene?
     colltrans path arm.urdf path.csv table.stl wall.stl --srdf arm.srdf
   With a minimum gap of 5 mm, fixed fingers and a proof:
-    colltrans path arm.urdf path.csv --joint finger=0.02 --keep 0.005 --save-proof path.json
+    colltrans path arm.urdf path.csv --joint finger=0.02 --min_gap 0.005 --save-proof path.json
     colltrans verify path.json
 
 `colltrans help files`: mesh formats and exit codes.";
@@ -400,7 +401,7 @@ Answers:
   undecided  the length lies between the bounds of the distance, a few roundings apart
 
 Examples:
-  Does a part keep a gap of 0.5 to its housing?
+  Does a part min_gap a gap of 0.5 to its housing?
     colltrans within shaft.stl --from housing.stl --length 0.5
   Which bodies of a scene are closer than 0.1?
     colltrans within hand.stl --among scene.jsonl --length 0.1
@@ -412,7 +413,7 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
    "fixed_pose": POSE, "direction": [x,y,z],
    "query": "contact"|"clearance"|"distance"|"depth"|
             "within"|"motion"|"motion_clearance",
-   "length": L (of "within"), "keep": GAP (the minimum gap),
+   "length": L (of "within"), "min_gap": GAP (the minimum gap),
    "moving_motion": MOTION, "fixed_motion": MOTION (of motions),
    "graze_tolerance": L, "solver": "auto"|"cta"|"portal" (of convex bodies),
    "start": "center"|"ellipsoids", "until": "exit"|SHARE (of "cta"),
@@ -471,7 +472,7 @@ bounds and rounding are multiples of the direction; other lengths are in the uni
                for the offset bodies
   rounding     of convex bodies: the part of the bounds' difference that is rounding
   tolerance    of parts: the tolerance used, each body is offset inwards by half of it
-  keep         the minimum gap: the bodies count as meeting at this distance
+  min_gap         the minimum gap: the bodies count as meeting at this distance
   start_overlaps  of parts that overlap now: [{"moving", "fixed", "least_tolerance"}], the least
                tolerance with which they would not; absent if there is none
   surfaces     of parts: open bodies, ["moving", "fixed"]

@@ -33,7 +33,7 @@ pub(crate) struct MotionArguments {
     pub(crate) clearance: bool,
     /// The minimum gap, at which bodies count as touching
     #[arg(long, value_name = "GAP", allow_hyphen_values = true, value_parser = length, default_value = "0", help_heading = OPTIONS)]
-    pub(crate) keep: f64,
+    pub(crate) min_gap: f64,
     /// Permitted overlap [default: 0; parts: precision of the files]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, help_heading = OPTIONS)]
     pub(crate) tolerance: Option<f64>,
@@ -206,12 +206,12 @@ impl<'a> MotionKind<'a> {
     fn motion(&self, option: &str, pose: Pose, notes: &mut Vec<String>) -> Result<Motion, Failure> {
         let named = |name: &str| format!("{option}{name}");
         Ok(match *self {
-            Self::Still => Motion::still(pose),
+            Self::Still => Motion::at_rest(pose),
             Self::Turn([point, axis, angle]) => {
                 let name = named("turn");
                 let (point, axis) =
                     (for_option(&name, vector(point))?, for_option(&name, direction(axis))?);
-                Motion::turn(pose, point, axis, parse_degrees(&name, angle)?)?
+                Motion::rotation_about(pose, point, axis, parse_degrees(&name, angle)?)?
             }
             Self::Screw([point, axis, angle, rise]) => {
                 let name = named("screw");
@@ -220,17 +220,17 @@ impl<'a> MotionKind<'a> {
                 let rise = for_option(&name, parse_number(rise))?;
                 Motion::screw(pose, point, axis, parse_degrees(&name, angle)?, rise)?
             }
-            Self::Slide(by) => Motion::slide(pose, by)?,
+            Self::Slide(by) => Motion::translation(pose, by)?,
             Self::Thrown(words) => {
                 let [center, way, spin] =
                     words.map(|text| for_option(&named("thrown"), vector(text)));
-                Motion::thrown(pose, center?, way?, spin?.map(f64::to_radians))?
+                Motion::free_flight(pose, center?, way?, spin?.map(f64::to_radians))?
             }
             Self::To(place) => {
                 notes.extend(place.note(&named("to")));
-                Motion::between(pose, for_option(&named("to"), place.pose(None, "--to"))?)?
+                Motion::between_poses(pose, for_option(&named("to"), place.pose(None, "--to"))?)?
             }
-            Self::Through(path) => Motion::through(&read_poses(path, notes)?)?,
+            Self::Through(path) => Motion::through_poses(&read_poses(path, notes)?)?,
         })
     }
 }

@@ -28,7 +28,7 @@ pub(crate) struct PathArguments {
     pub(crate) joint: Vec<String>,
     /// The minimum gap: bodies count as touching at this distance, in metres
     #[arg(long, value_name = "GAP", allow_hyphen_values = true, value_parser = length, default_value = "0")]
-    pub(crate) keep: f64,
+    pub(crate) min_gap: f64,
     /// A link whose meshes are replaced by their convex hulls; * stands for all links. Open meshes are not
     /// replaced
     #[arg(long, value_name = "LINK")]

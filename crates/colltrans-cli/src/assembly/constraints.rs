@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use colltrans_assembly::Assembly;
-use colltrans_assembly::constraints::WITHIN_DEGREES;
-use colltrans_assembly::plan::Times;
+use colltrans_assembly::constraints::DEFAULT_FORBIDDEN_DEGREES;
+use colltrans_assembly::plan::HandlingTimes;
 use colltrans_assembly::roles::{PairFit, Role};
 
 use crate::args::{ConstraintArguments, RoleArguments, direction};
@@ -41,7 +41,7 @@ pub(super) fn with_constraints(
         let refused = |reason: &str| usage_failure(format!("--never {given}: {reason}"));
         let direction = direction(axis).map_err(|reason| refused(&reason))?;
         let degrees = match degrees {
-            "" => WITHIN_DEGREES,
+            "" => DEFAULT_FORBIDDEN_DEGREES,
             text => text.trim().parse().map_err(|_| refused(&format!("expected {form}")))?,
         };
         assembly = assembly.with_never(&[part], direction, degrees)?;
@@ -92,13 +92,13 @@ pub(super) fn with_roles(
 ///
 /// # Errors
 /// The file cannot be read, or a time is invalid.
-pub(super) fn handling_times(file: Option<&Path>) -> Result<Times, Failure> {
-    let Some(path) = file else { return Ok(Times::default()) };
+pub(super) fn handling_times(file: Option<&Path>) -> Result<HandlingTimes, Failure> {
+    let Some(path) = file else { return Ok(HandlingTimes::default()) };
     let refused =
         |reason: String| Failure::new(Code::Input, format!("{}: {reason}", path.display()));
-    let times: Times =
+    let times: HandlingTimes =
         serde_json::from_str(&read_text(path)?).map_err(|e| refused(e.to_string()))?;
-    match times.wrong() {
+    match times.first_invalid() {
         Some((name, seconds)) => {
             Err(refused(format!("{name}: invalid time {seconds}; expected a number of seconds")))
         }

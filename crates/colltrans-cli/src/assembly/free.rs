@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::sync::atomic::AtomicBool;
 
 use colltrans::ProofFile;
-use colltrans::free::FreeOptions;
 use colltrans::record::FreeRecord;
+use colltrans::removal::directions::FreeOptions;
 use colltrans_assembly::Bodies;
-use colltrans_assembly::free::Removal;
+use colltrans_assembly::free::RemovalPair;
 use serde_json::{Value, json};
 
 use crate::directions;
@@ -27,7 +27,7 @@ pub(super) struct GroupRemoval {
 /// Computes the removal directions of all groups, and their proofs if `with_proofs` is set.
 ///
 /// # Errors
-/// The query of a group fails.
+/// The query of a group fails, or a proof cannot be computed.
 pub(super) fn group_removals(
     bodies: &Bodies,
     groups: Vec<(String, Vec<usize>)>,
@@ -35,16 +35,16 @@ pub(super) fn group_removals(
     with_proofs: bool,
 ) -> Result<Vec<GroupRemoval>, Failure> {
     let compute = |(name, group): (String, Vec<usize>)| {
-        let removal = Removal::new(bodies, &group)?;
-        let free = removal.directions(options, &AtomicBool::new(false))?;
+        let removal = RemovalPair::new(bodies, &group)?;
+        let free = removal.free_directions(options, &AtomicBool::new(false))?;
         let proof = with_proofs.then(|| {
             let [moving, fixed] = removal.solids();
             ProofFile::of_free_directions(&free, [&[moving], &[fixed]])
         });
         let proof_failure =
             |error: colltrans::ProofFileError| Failure::new(Code::Query, error.to_string());
-        let parts = bodies.assembly().names(&group).into_iter().map(str::to_owned).collect();
-        let record = removal.record(bodies, &free);
+        let parts = bodies.assembly().part_names(&group).into_iter().map(str::to_owned).collect();
+        let record = removal.to_record(bodies, &free);
         Ok(GroupRemoval { name, parts, record, proof: proof.transpose().map_err(proof_failure)? })
     };
     groups.into_iter().map(compute).collect()

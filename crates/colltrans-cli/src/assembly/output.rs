@@ -5,10 +5,10 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use colltrans::glam::DVec3;
-use colltrans_assembly::hints::hints;
-use colltrans_assembly::plan::{Plan, and_or};
+use colltrans_assembly::hints::find_hints;
+use colltrans_assembly::plan::{Plan, precedence_graph};
 use colltrans_assembly::report::{facts, glb, html};
-use colltrans_assembly::{Assembly, Findings, Fit};
+use colltrans_assembly::{Analysis, Assembly, Fit};
 use colltrans_assembly::{map, record, suggest};
 
 use super::free::GroupRemoval;
@@ -16,7 +16,7 @@ use crate::args::AssemblyArguments;
 use crate::directions;
 use crate::failure::{Failure, note, print, print_json};
 use crate::inputs::check_output_path;
-use crate::numbers::counted;
+use crate::numbers::count_text;
 use crate::outputs::{FileNames, Outputs};
 use crate::terminal::{escape_json, escape_line};
 
@@ -25,14 +25,14 @@ use crate::terminal::{escape_json, escape_line};
 /// # Errors
 /// An output cannot be written.
 pub(super) fn write(
-    findings: &Findings,
+    findings: &Analysis,
     removals: &[GroupRemoval],
     arguments: &AssemblyArguments,
 ) -> Result<(), Failure> {
     for text in findings.bodies.assembly().notes() {
         note(text);
     }
-    let mut json = facts::json(findings);
+    let mut json = facts::findings_json(findings);
     if !removals.is_empty() {
         json["free"] = removals.iter().map(GroupRemoval::json).collect();
     }
@@ -51,7 +51,7 @@ pub(super) fn write(
 
 /// Writes all files of the folder. None of them appears before all are complete.
 fn write_files(
-    findings: &Findings,
+    findings: &Analysis,
     removals: &[GroupRemoval],
     arguments: &AssemblyArguments,
     folder: &Path,
@@ -62,20 +62,20 @@ fn write_files(
     let mut put = |name: &str, bytes: &[u8]| outputs.write(folder.join(name), bytes);
     let source = arguments.source.canonicalize().unwrap_or_else(|_| arguments.source.clone());
     let title = source.file_stem().map_or("assembly".into(), |s| s.to_string_lossy().into_owned());
-    put("report.html", html::page(findings, &title).as_bytes())?;
-    put("disassembly.glb", &glb::animation(findings.bodies.assembly(), &findings.plan))?;
+    put("report.html", html::report_page(findings, &title).as_bytes())?;
+    put("disassembly.glb", &glb::plan_animation(findings.bodies.assembly(), &findings.plan))?;
     put("assembly.json", escape_json(&json.to_string()).as_bytes())?;
     put("matrix.csv", findings.matrix.to_csv(findings.bodies).as_bytes())?;
     let assembly = findings.bodies.assembly();
     put("precedence.csv", findings.plan.to_csv(assembly, &findings.times).as_bytes())?;
-    let and_or_graph = and_or(assembly, &findings.matrix).to_string();
+    let and_or_graph = precedence_graph(assembly, &findings.matrix).to_string();
     put("precedence.json", escape_json(&and_or_graph).as_bytes())?;
     let names = map_names(findings.maps.iter().map(|(name, _)| name));
     for ((name, map), [svg, png, json]) in findings.maps.iter().zip(names) {
         let title = format!("Free travel of {name} in all directions");
-        put(&svg, map::svg(map, &title).as_bytes())?;
-        put(&png, &map::png(map, 1_200))?;
-        put(&json, escape_json(&record::map(findings.bodies, map).to_string()).as_bytes())?;
+        put(&svg, map::render_svg(map, &title).as_bytes())?;
+        put(&png, &map::render_png(map, 1_200))?;
+        put(&json, escape_json(&record::map_json(findings.bodies, map).to_string()).as_bytes())?;
     }
     let names = proof_names(removals.iter().map(|removal| &removal.name));
     for (removal, name) in removals.iter().zip(names) {
@@ -89,7 +89,7 @@ fn write_files(
 /// Checks that no output overwrites an input.
 ///
 /// # Errors
-/// An output would.
+/// An output would overwrite an input.
 pub(super) fn check_output_paths(
     arguments: &AssemblyArguments,
     assembly: &Assembly,
@@ -130,24 +130,24 @@ fn proof_names<'a>(parts: impl IntoIterator<Item = &'a String>) -> Vec<String> {
 }
 
 /// Returns the answer as text.
-fn summary_text(findings: &Findings) -> String {
+fn summary_text(findings: &Analysis) -> String {
     let assembly = findings.bodies.assembly();
-    let names = |parts: &[usize]| escape_line(name_list(&assembly.names(parts)));
+    let names = |parts: &[usize]| escape_line(name_list(&assembly.part_names(parts)));
     let fit = match findings.bodies.fit() {
         Fit::Tolerance(length) => format!("tolerance {length}"),
         Fit::Chords { largest, .. } => {
             format!("tolerance of each pair by its chord errors, {largest} at most")
         }
-        Fit::Apart(length) => format!("minimum gap {length}"),
+        Fit::MinGap(length) => format!("minimum gap {length}"),
     };
-    let mut text = format!("{}, {fit}\n", counted(assembly.parts().len(), "part", "parts"));
+    let mut text = format!("{}, {fit}\n", count_text(assembly.parts().len(), "part", "parts"));
     for (k, p) in assembly.parts().iter().enumerate() {
-        for defect in p.defects().iter().chain(&findings.bodies.remark(k)) {
+        for defect in p.defects().iter().chain(&findings.bodies.shrink_defects(k)) {
             let _ = writeln!(text, "  {}: {}", escape_line(p.name()), escape_line(defect));
         }
     }
-    for hint in hints(findings.bodies, &findings.start) {
-        let _ = writeln!(text, "  {}", escape_line(hint.words));
+    for hint in find_hints(findings.bodies, &findings.start) {
+        let _ = writeln!(text, "  {}", escape_line(hint.description));
     }
     push_overlaps(&mut text, findings);
     if !findings.plan.steps.is_empty() {
@@ -156,30 +156,33 @@ fn summary_text(findings: &Findings) -> String {
     for stage in findings.plan.stages() {
         push_stage(&mut text, findings, &stage);
     }
-    let (seconds, rounds) =
-        (findings.times.of(&findings.plan).iter().sum::<f64>(), findings.plan.rounds().len());
+    let (seconds, rounds) = (
+        findings.times.step_seconds(&findings.plan).iter().sum::<f64>(),
+        findings.plan.parallel_rounds().len(),
+    );
     if findings.plan.steps.len() > 1 {
-        let rounds = counted(rounds, "round", "rounds");
+        let rounds = count_text(rounds, "round", "rounds");
         let _ =
             writeln!(text, "  about {seconds:.0} s by the table of handling times, in {rounds}");
     }
-    if let Some(wanted) = &findings.plan.wanted {
-        let _ = writeln!(text, "to remove\n  {}", escape_line(wanted.words(assembly)));
+    if let Some(wanted) = &findings.plan.selection {
+        let _ = writeln!(text, "to remove\n  {}", escape_line(wanted.describe(assembly)));
     }
-    if !findings.plan.last.is_empty() {
-        let _ = writeln!(text, "remaining\n  {}", names(&findings.plan.last));
+    if !findings.plan.base.is_empty() {
+        let _ = writeln!(text, "remaining\n  {}", names(&findings.plan.base));
     }
-    if !findings.plan.left.is_empty() {
-        let fixed = findings.plan.left.iter().all(|&part| assembly.parts()[part].fixed());
-        let why = match (fixed, findings.plan.left.len()) {
+    if !findings.plan.remaining.is_empty() {
+        let fixed = findings.plan.remaining.iter().all(|&part| assembly.parts()[part].is_fixed());
+        let why = match (fixed, findings.plan.remaining.len()) {
             (false, _) => "",
             (true, 1) => ", because it is fixed",
             (true, _) => ", because they are fixed",
         };
-        let _ = writeln!(text, "left{why}\n  {}", names(&findings.plan.left));
+        let _ = writeln!(text, "left{why}\n  {}", names(&findings.plan.remaining));
     }
-    for stuck in &findings.plan.stuck {
-        let (reason, details) = (stuck.reason(findings.bodies), stuck.details(findings.bodies));
+    for stuck in &findings.plan.interlocked {
+        let (reason, details) =
+            (stuck.reason_sentence(findings.bodies), stuck.evidence_sentences(findings.bodies));
         let (reason, details) = (escape_line(reason), escape_line(details));
         let head = stuck.heading(findings.bodies);
         let _ = writeln!(text, "{head}\n  {}: {reason}\n    {details}", names(&stuck.parts));
@@ -208,18 +211,19 @@ fn summary_text(findings: &Findings) -> String {
 }
 
 /// Returns the names of the parts that a stage removes.
-fn removed_names(findings: &Findings, stage: &Range<usize>) -> String {
+fn removed_names(findings: &Analysis, stage: &Range<usize>) -> String {
     let (assembly, parts) = (findings.bodies.assembly(), &findings.plan.steps[stage.start].parts);
-    if stage.len() == 1 && assembly.constraints().name(parts).is_none() {
-        return name_list(&assembly.names(parts));
+    if stage.len() == 1 && assembly.constraints().group_name(parts).is_none() {
+        return name_list(&assembly.part_names(parts));
     }
-    findings.plan.takes(assembly, stage)
+    findings.plan.describe_stage(assembly, stage)
 }
 
-/// Maximum number of names that are listed.
+/// Number of names to which a longer list is shortened.
 const MAX_NAMES: usize = 12;
 
-/// Joins names, at most about [`MAX_NAMES`] of them.
+/// Joins names. Of more than [`MAX_NAMES`] + 1 names only the first [`MAX_NAMES`] are listed, with the number of the
+/// others.
 fn name_list(names: &[&str]) -> String {
     match names.len().saturating_sub(MAX_NAMES) {
         0 | 1 => names.join(", "),
@@ -228,26 +232,29 @@ fn name_list(names: &[&str]) -> String {
 }
 
 /// Appends a stage of the plan: steps that are one action.
-fn push_stage(text: &mut String, findings: &Findings, stage: &Range<usize>) {
+fn push_stage(text: &mut String, findings: &Analysis, stage: &Range<usize>) {
     let assembly = findings.bodies.assembly();
-    let names = |parts: &[usize]| escape_line(name_list(&assembly.names(parts)));
+    let names = |parts: &[usize]| escape_line(name_list(&assembly.part_names(parts)));
     let steps = &findings.plan.steps[stage.clone()];
     let step = &steps[0];
-    let within = step.within.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
+    let within =
+        step.group_step.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
     let travel_text = |travel: f64, d: DVec3| match travel {
         0.0 => format!("away along {},{},{}", d.x, d.y, d.z),
         _ => format!("{travel} along {},{},{}", d.x, d.y, d.z),
     };
-    let (numbers, removed) = (Plan::numbers(stage), escape_line(removed_names(findings, stage)));
+    let (numbers, removed) =
+        (Plan::step_numbers(stage), escape_line(removed_names(findings, stage)));
     let head = format!("  {numbers}. {removed}{within}: ");
-    if let (Some(turn), [screwed, rest]) = (step.turn(), &step.path[..]) {
+    if let (Some(turn), [screwed, rest]) = (step.first_turn(), &step.path[..]) {
         let turns = match screwed.travel {
             0.0 => format!("turn by {:.2} degrees", 360.0 * turn.turns),
             travel => format!("unscrew, {:.2} turns, {travel}", turn.turns.abs()),
         };
         let _ = writeln!(text, "{head}{turns}, then {}", travel_text(rest.travel, rest.direction));
     } else if let [_] = &step.path[..] {
-        let travel = match (findings.plan.direction(stage), findings.plan.travel(stage)) {
+        let travel = match (findings.plan.stage_direction(stage), findings.plan.stage_travel(stage))
+        {
             (Some(d), travel) => travel_text(travel, d),
             (None, 0.0) => "away, each in its own direction".into(),
             (None, travel) => format!("{travel} each in its own direction"),
@@ -256,7 +263,7 @@ fn push_stage(text: &mut String, findings: &Findings, stage: &Range<usize>) {
     } else {
         let _ = writeln!(text, "{head}in {} moves", step.path.len());
         for (back, leg) in
-            step.path.iter().map(|l| ("", l)).chain(step.back.iter().map(|l| ("back ", l)))
+            step.path.iter().map(|l| ("", l)).chain(step.return_legs.iter().map(|l| ("back ", l)))
         {
             let _ = writeln!(
                 text,
@@ -266,18 +273,18 @@ fn push_stage(text: &mut String, findings: &Findings, stage: &Range<usize>) {
             );
         }
     }
-    for ignored in steps.iter().filter_map(|step| step.ignores(assembly)) {
+    for ignored in steps.iter().filter_map(|step| step.describe_ignored(assembly)) {
         let _ = writeln!(text, "     {}", escape_line(ignored));
     }
-    for open in steps.iter().flat_map(|step| step.unsettled(assembly)) {
+    for open in steps.iter().flat_map(|step| step.describe_unsettled(assembly)) {
         let _ = writeln!(text, "     {}", escape_line(open));
     }
-    for passed in findings.plan.passed_words(assembly, stage) {
+    for passed in findings.plan.describe_stage_contacts(assembly, stage) {
         let _ = writeln!(text, "     {}", escape_line(passed));
     }
     for step in steps {
-        if let Some(turn) = step.turn() {
-            let _ = writeln!(text, "     {}: {}", names(&step.parts), escape_line(turn.words()));
+        if let Some(turn) = step.first_turn() {
+            let _ = writeln!(text, "     {}: {}", names(&step.parts), escape_line(turn.describe()));
         }
     }
     let mut surfaces: Vec<usize> = steps.iter().flat_map(|s| s.surfaces.iter().copied()).collect();
@@ -289,11 +296,11 @@ fn push_stage(text: &mut String, findings: &Findings, stage: &Range<usize>) {
 }
 
 /// Appends overlaps at the start, and suggestions.
-fn push_overlaps(text: &mut String, findings: &Findings) {
+fn push_overlaps(text: &mut String, findings: &Analysis) {
     let remaining: Vec<_> = findings.start.remaining().collect();
     if !remaining.is_empty() {
         text.push_str(match findings.bodies.fit() {
-            Fit::Apart(_) => "nearer than that at the start\n",
+            Fit::MinGap(_) => "nearer than that at the start\n",
             _ => "overlapping with this tolerance\n",
         });
     }
@@ -301,8 +308,8 @@ fn push_overlaps(text: &mut String, findings: &Findings) {
         let [a, b] = o.parts.map(|k| escape_line(findings.bodies.assembly().parts()[k].name()));
         let depth = match (o.depth, findings.bodies.fit()) {
             (None, _) => " by more than their size".into(),
-            (Some(0.0), Fit::Apart(_)) => String::new(),
-            (Some(depth), Fit::Apart(_)) => format!(", which overlap by {depth}"),
+            (Some(0.0), Fit::MinGap(_)) => String::new(),
+            (Some(depth), Fit::MinGap(_)) => format!(", which overlap by {depth}"),
             (Some(depth), _) => format!(" by {depth}"),
         };
         let _ = writeln!(text, "  {a}, {b}{depth}");
@@ -310,12 +317,16 @@ fn push_overlaps(text: &mut String, findings: &Findings) {
     if remaining.is_empty() && !findings.suggestions.is_empty() {
         text.push_str("possible reasons\n");
     }
-    for suggestion in suggest::told(findings.bodies.assembly(), &findings.suggestions) {
+    for suggestion in
+        suggest::describe_suggestions(findings.bodies.assembly(), &findings.suggestions)
+    {
         let _ =
             writeln!(text, "  perhaps intended, which --auto assumes: {}", escape_line(suggestion));
     }
-    let apart = matches!(findings.bodies.fit(), Fit::Apart(_));
-    if let Some(tolerance) = findings.start.suggested.filter(|_| !remaining.is_empty() && !apart) {
+    let apart = matches!(findings.bodies.fit(), Fit::MinGap(_));
+    if let Some(tolerance) =
+        findings.start.suggested_tolerance.filter(|_| !remaining.is_empty() && !apart)
+    {
         let _ = writeln!(
             text,
             "  try --tolerance {tolerance} or, for curved fits, the chord errors of both parts together"

@@ -1,8 +1,8 @@
 //! A cache of bodies that several queries use. It evicts the least recently used ones.
 //!
-//! Invariant: after each insertion, the bytes of all entries, as computed at their last use, do not exceed the capacity,
-//! or there are only the two entries that one query needs. Bodies are built outside the lock. A thread that needs a body
-//! which another thread is building waits only for this body.
+//! Invariant: after a body is built, the bytes of all entries, as computed at their last use, do not exceed the
+//! capacity, or there are at most two entries, because one query needs two bodies. Bodies are built outside the lock. A
+//! thread that needs a body which another thread is building waits only for this body.
 
 use std::collections::{BTreeMap, HashMap};
 use std::mem::size_of;

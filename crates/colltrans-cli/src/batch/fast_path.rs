@@ -38,7 +38,7 @@ pub(super) fn parse_usual_line(text: &str) -> Option<Query<'_, &str>> {
         until: None,
         tolerance: None,
         ignore_start_overlaps: None,
-        keep: fields.keep,
+        min_gap: fields.min_gap,
     })
 }
 
@@ -54,7 +54,7 @@ struct Fields<'a> {
     question: Option<QueryName>,
     length: Option<f64>,
     graze_tolerance: Option<f64>,
-    keep: Option<f64>,
+    min_gap: Option<f64>,
     solver: Option<Solver>,
 }
 
@@ -69,7 +69,7 @@ impl<'a> Fields<'a> {
             "fixed_pose" => set_once(&mut self.fixed_pose, reader.pose()?),
             "direction" => set_once(&mut self.direction, reader.numbers()?),
             "graze_tolerance" => set_once(&mut self.graze_tolerance, reader.number()?),
-            "keep" => set_once(&mut self.keep, reader.number()?),
+            "min_gap" => set_once(&mut self.min_gap, reader.number()?),
             "query" => set_once(&mut self.question, reader.name()?),
             "length" => set_once(&mut self.length, reader.number()?),
             "solver" => set_once(&mut self.solver, reader.name()?),
@@ -256,12 +256,13 @@ mod tests {
         r#"{"id": "q0", "moving": {"mesh": "a.off"}, "fixed": {"mesh": "b.off"}, "moving_pose": {"translation": [0.25942905256569254, -1.5e-3, 6], "rotation": [0.5, 0.5, -0.5, 0.5]}, "direction": [0.034274851448885826, -0, -1]}"#,
         r#"{"direction":[1E5,0.10,1e+2],"query":"clearance","solver":"cta","graze_tolerance":0.5,"fixed_pose":{"rotation":[0,0,0,1]},"fixed":{"points":[[0,0,0],[1,1,1]]},"moving":{"solid":"\u00fc}"},"id":17}"#,
         r#" { "id" : null , "moving" : { "mesh" : "}{é" , "scale" : 2 } , "fixed" : { } , "direction" : [ 1 , 2 , 123456789012345678901234567890 ] } "#,
-        r#"{"moving":{"mesh":"a"},"fixed":{"mesh":"b"},"direction":[0.1,2.2250738585072011e-308,5e-324],"solver":"portal","keep":2.5e-1,"query":"contact"}"#,
+        r#"{"moving":{"mesh":"a"},"fixed":{"mesh":"b"},"direction":[0.1,2.2250738585072011e-308,5e-324],"solver":"portal","min_gap":2.5e-1,"query":"contact"}"#,
         r#"{"moving":{"mesh":"a"},"fixed":{"mesh":"b"},"query":"within","length":0.125}"#,
     ];
 
     fn bits(query: &Query<'_, impl Sized>) -> String {
-        let Query { moving_pose, fixed_pose, direction, graze_tolerance, length, keep, .. } = query;
+        let Query { moving_pose, fixed_pose, direction, graze_tolerance, length, min_gap, .. } =
+            query;
         let numbers = [moving_pose, fixed_pose]
             .into_iter()
             .flatten()
@@ -269,7 +270,7 @@ mod tests {
             .chain(direction.iter().flatten().copied())
             .chain(*graze_tolerance)
             .chain(*length)
-            .chain(*keep);
+            .chain(*min_gap);
         let bits: Vec<u64> = numbers.map(f64::to_bits).collect();
         let id = query.id.map(RawValue::get);
         format!("{id:?} {bits:?} {:?} {:?}", query.question, query.solver)

@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
 /// Checks that the results do not overwrite the queries.
 ///
 /// # Errors
-/// They would.
+/// The results would overwrite the queries.
 fn check_results_path(queries: &Path, output: Option<&Path>) -> Result<(), Failure> {
     // Standard input may be a file.
     let file = if queries == Path::new("-") { Path::new("/dev/stdin") } else { queries };

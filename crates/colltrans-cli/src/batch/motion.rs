@@ -66,10 +66,11 @@ impl MotionSource {
         normalised_poses_note(place, &lengths)
     }
 
-    /// Returns the motion from a pose, or from its own poses.
+    /// Returns the motion. It starts at `pose`, or at the identity if `pose` is `None`. The kinds `between` and
+    /// `through` have poses of their own instead.
     ///
     /// # Errors
-    /// There is a second kind, or a value is invalid.
+    /// The motion has a second kind, a pose is given although the motion has its own, or a value is invalid.
     fn motion(&self, pose: Option<&PoseSource>) -> Result<Motion, String> {
         match &self.other {
             Some(name) => Err(format!("a motion has one kind; remove `{name}`")),
@@ -99,25 +100,28 @@ impl Kind {
         }
         let start = pose.copied().unwrap_or_default().pose()?;
         let motion = match self {
-            Self::Still {} => Ok(Motion::still(start)),
-            Self::Slide { by } => Motion::slide(start, v(*by)),
-            Self::Turn { point, axis, radians, degrees } => {
-                Motion::turn(start, v(*point), v(*axis), angle_in_radians(*radians, *degrees)?)
-            }
+            Self::Still {} => Ok(Motion::at_rest(start)),
+            Self::Slide { by } => Motion::translation(start, v(*by)),
+            Self::Turn { point, axis, radians, degrees } => Motion::rotation_about(
+                start,
+                v(*point),
+                v(*axis),
+                angle_in_radians(*radians, *degrees)?,
+            ),
             Self::Screw { point, axis, radians, degrees, rise } => {
                 let angle = angle_in_radians(*radians, *degrees)?;
                 Motion::screw(start, v(*point), v(*axis), angle, *rise)
             }
             Self::Thrown { center, velocity, angular_velocity } => {
-                Motion::thrown(start, v(*center), v(*velocity), v(*angular_velocity))
+                Motion::free_flight(start, v(*center), v(*velocity), v(*angular_velocity))
             }
-            Self::Between { from, to } => Motion::between(from.pose()?, to.pose()?),
+            Self::Between { from, to } => Motion::between_poses(from.pose()?, to.pose()?),
             Self::Through { poses } => {
                 let pose = |(k, pose): (usize, &PoseSource)| {
                     pose.pose().map_err(|what| format!("pose {k}: {what}"))
                 };
                 let poses: Vec<_> = poses.iter().enumerate().map(pose).collect::<Result<_, _>>()?;
-                Motion::through(&poses)
+                Motion::through_poses(&poses)
             }
         };
         motion.map_err(|error| error.to_string())
@@ -165,18 +169,20 @@ pub(super) fn convex_record<B>(
         return Err("`ignore_start_overlaps` requires solids".into());
     }
     let cast = MotionCast::new(moving.body.along(&motions[0]), fixed.body.along(&motions[1]));
-    let cast = match (query.keep, query.tolerance) {
+    let cast = match (query.min_gap, query.tolerance) {
         (Some(_), Some(_)) => {
-            return Err("a motion accepts either `keep` or `tolerance`; remove one of them".into());
+            return Err(
+                "a motion accepts either `min_gap` or `tolerance`; remove one of them".into()
+            );
         }
-        (None, Some(depth)) => cast.and_then(|cast| cast.tolerating(depth)),
-        (keep, None) => cast.and_then(|cast| cast.keeping(keep.unwrap_or_default())),
+        (None, Some(depth)) => cast.and_then(|cast| cast.with_tolerance(depth)),
+        (min_gap, None) => cast.and_then(|cast| cast.with_min_gap(min_gap.unwrap_or_default())),
     };
     let cast = cast.map_err(|error| error.to_string())?;
     let failed = |error| case::motion_failure(error, &cast).into_message();
     Ok(if clears {
         MotionRecord::of_clearance(&cast.clearance().map_err(failed)?, &cast)
     } else {
-        MotionRecord::of(&cast.first_contact().map_err(failed)?, &cast)
+        MotionRecord::from_outcome(&cast.first_contact().map_err(failed)?, &cast)
     })
 }

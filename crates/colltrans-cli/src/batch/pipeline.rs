@@ -24,8 +24,9 @@ const CHUNK_LINES: usize = 256;
 const CHUNK_BYTES: usize = 1 << 20;
 /// Maximum number of unwritten chunks per thread.
 const CHUNKS_PER_THREAD: u64 = 4;
-/// Maximum number of bytes of lines that are being answered and of results that wait for earlier ones. One more line may
-/// exceed it.
+/// Number of bytes of lines that are being answered and of results that wait for earlier ones, above which no chunk is
+/// read. The chunk to be written next is read in any case. One chunk, and results that are longer than their lines, may
+/// exceed the limit.
 const MAX_BYTES: usize = 64 << 20;
 
 /// A line of the input.
@@ -122,8 +123,8 @@ impl Pipeline {
         }
     }
 
-    /// Answers chunks until the input ends. `answer` gets a line with its number, appends the result and returns whether it
-    /// is an answer.
+    /// Answers chunks until the input ends or the results cannot be written. `answer` gets a line with its number,
+    /// appends the result to the buffer and returns whether the result is an answer.
     pub(crate) fn answer_chunks(
         &self,
         mut answer: impl FnMut(u64, Line<'_>, &mut Vec<u8>) -> bool,

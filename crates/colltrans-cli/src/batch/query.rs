@@ -8,8 +8,8 @@ use colltrans::glam::{DQuat, DVec3};
 use colltrans::motion::Motion;
 use colltrans::record::{PairQuestion, Question, Record};
 use colltrans::{Cast, ConvexPolyhedron, Options, Pair, Pose, PoseError, Solver, cta};
-use colltrans_assembly_io::read::plain;
-use colltrans_mesh::body::{LoadError, Take};
+use colltrans_assembly_io::read::json_error_reason;
+use colltrans_mesh::body::{BodyKind, LoadError};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -173,9 +173,11 @@ impl Batch {
 /// Returns the error of a mesh file with a hint at fields that avoid it.
 fn mesh_error_message(error: &LoadError) -> String {
     let LoadError::Body { source, .. } = error else { return error.to_string() };
-    let fields = source.instead().iter().map(|take| match take {
-        Take::Solid => r#"; "solid" instead of "mesh" accepts it"#,
-        Take::Open => r#"; "solid" with "open": true accepts it as a surface without an interior"#,
+    let fields = source.alternatives().iter().map(|take| match take {
+        BodyKind::Solid => r#"; "solid" instead of "mesh" accepts it"#,
+        BodyKind::Open => {
+            r#"; "solid" with "open": true accepts it as a surface without an interior"#
+        }
         _ => r#"; "mesh" with "hull": true takes its convex hull"#,
     });
     format!("{error}{}", fields.collect::<String>())
@@ -242,11 +244,11 @@ fn answer_query<B>(
         (Task::Motion(motions, clears), shapes) => {
             let [moving, fixed] = as_solids(shapes)?;
             let bodies = [moving.get(), fixed.get()];
-            let (keep, motions) = (query.keep.unwrap_or_default(), &*motions);
+            let (min_gap, motions) = (query.min_gap.unwrap_or_default(), &*motions);
             let ignore_start_overlaps = query.ignore_start_overlaps.unwrap_or_default();
             let tolerance = query.tolerance;
             let motion_query =
-                PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, keep };
+                PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, min_gap };
             Ok(solid_line(motion_query.answer().map_err(|e| e.to_string())?.into(), bodies))
         }
         (Task::Cast(direction), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
@@ -280,7 +282,7 @@ impl<B> Query<'_, B> {
             }
         };
         self.reject_fields(&CAST_FIELDS)?;
-        self.reject_fields(&["keep", "tolerance", "moving_motion", "fixed_motion"])?;
+        self.reject_fields(&["min_gap", "tolerance", "moving_motion", "fixed_motion"])?;
         if !matches!(question, PairQuestion::Within(_)) {
             self.reject_fields(&["length"])?;
         }
@@ -305,7 +307,7 @@ impl<B> Query<'_, B> {
     /// Checks that none of these fields is given.
     ///
     /// # Errors
-    /// One is. The message names the first.
+    /// At least one of the fields is given. The message names the first of them.
     fn reject_fields(&self, fields: &[&str]) -> Result<(), String> {
         let is_given = |field: &&&str| match **field {
             "direction" => self.direction.is_some(),
@@ -313,7 +315,7 @@ impl<B> Query<'_, B> {
             "solver" => self.solver.is_some(),
             "start" => self.start.is_some(),
             "until" => self.until.is_some(),
-            "keep" => self.keep.is_some(),
+            "min_gap" => self.min_gap.is_some(),
             "tolerance" => self.tolerance.is_some(),
             "ignore_start_overlaps" => self.ignore_start_overlaps.is_some(),
             "length" => self.length.is_some(),
@@ -334,7 +336,7 @@ impl<B> Query<'_, B> {
     /// Returns the options of the solver `cta`.
     ///
     /// # Errors
-    /// There are such options for another solver.
+    /// The query has `start` or `until`, and its solver is not `cta`.
     fn narrowing(&self) -> Result<cta::Options, String> {
         if self.solver != Some(Solver::Cta) && (self.start.is_some() || self.until.is_some()) {
             return Err(r#"`start` and `until` require "solver": "cta""#.into());
@@ -357,7 +359,7 @@ impl<B> Query<'_, B> {
             .with_solver(self.solver.unwrap_or_default())
             .with_narrowing(self.narrowing()?)
             .with_graze_tolerance(self.graze_tolerance.unwrap_or_default())
-            .with_keep(self.keep.unwrap_or_default());
+            .with_min_gap(self.min_gap.unwrap_or_default());
         let (moving_at, fixed_at) = (moving.body.at(poses[0]), fixed.body.at(poses[1]));
         let cast = Cast::new(moving_at, fixed_at, direction)
             .and_then(|cast| cast.with_options(options))
@@ -366,7 +368,7 @@ impl<B> Query<'_, B> {
             Some(QueryName::Clearance) => Question::Clearance,
             _ => Question::Contact,
         };
-        let answer = question.ask(&cast);
+        let answer = question.answer(&cast);
         let answer = answer.map_err(|error| case::cast_failure(error, &cast).into_message())?;
         Ok(convex_line(answer.record(&cast), [moving, fixed]))
     }
@@ -396,7 +398,7 @@ impl<B> Query<'_, B> {
             direction,
             tolerance: self.tolerance,
             ignore_start_overlaps: self.ignore_start_overlaps.unwrap_or_default(),
-            keep: self.keep.unwrap_or_default(),
+            min_gap: self.min_gap.unwrap_or_default(),
         };
         let answer = query.answer(|| ()).map_err(|e| e.to_string())?;
         let notes = query.bodies.into_iter().flat_map(|body| &body.notes).chain(&answer.notes);
@@ -426,7 +428,7 @@ fn pair_line(
     if let [Shape::Convex(moving), Shape::Convex(fixed)] = shapes {
         let placed = [moving.body.at(poses[0]), fixed.body.at(poses[1])];
         let pair = Pair::new(placed[0], placed[1]).map_err(|error| error.to_string())?;
-        let answer = question.ask(&pair).map_err(|error| error.to_string())?;
+        let answer = question.answer(&pair).map_err(|error| error.to_string())?;
         return Ok(convex_line(answer.record(&pair), [moving, fixed]));
     }
     let [moving, fixed] = as_solids(shapes)?;
@@ -525,7 +527,7 @@ impl PoseSource {
 
 /// Returns the message of a syntax error with the number of its line in the file; the parser gets single lines.
 pub(crate) fn syntax_error_message(number: u64, error: &serde_json::Error) -> String {
-    let what = plain(error)
+    let what = json_error_reason(error)
         .replace("the file ends inside", "the line ends inside")
         .replace("expected path string", "expected a path");
     format!("line {number}, column {}: {what}", error.column())

@@ -33,7 +33,7 @@ pub(super) struct Query<'a, Body> {
     pub(super) until: Option<cta::Until>,
     pub(super) tolerance: Option<f64>,
     pub(super) ignore_start_overlaps: Option<bool>,
-    pub(super) keep: Option<f64>,
+    pub(super) min_gap: Option<f64>,
 }
 
 /// Returns the text of a value. `null` is a value, too, which a result repeats.

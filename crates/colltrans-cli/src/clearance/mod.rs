@@ -38,10 +38,16 @@ fn answer_parts(
     let Request { targets, poses, directions, .. } = request;
     let bodies = load::read_parts(files, &arguments.part_options())?;
     load::print_notes(&arguments.pair.places, bodies.iter().flat_map(|body| &body.notes));
-    let (bodies, keep) = (bodies.each_ref(), arguments.pair.keep);
+    let (bodies, min_gap) = (bodies.each_ref(), arguments.pair.min_gap);
     let ClearanceArguments { tolerance, ignore_start_overlaps, .. } = *arguments;
-    let query =
-        |direction| PartsQuery { bodies, poses, direction, tolerance, ignore_start_overlaps, keep };
+    let query = |direction| PartsQuery {
+        bodies,
+        poses,
+        direction,
+        tolerance,
+        ignore_start_overlaps,
+        min_gap,
+    };
     let all = match directions {
         Directions::Many(all) => all,
         Directions::One(direction) => {

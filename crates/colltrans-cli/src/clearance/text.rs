@@ -51,7 +51,7 @@ pub(super) fn answer_text(answer: &Answer, direction: DVec3, is_default: bool) -
         (false, false) => "as given: each body is offset inwards by half of it",
     };
     push_line(&mut text, "tolerance", &format!("{} ({source})", number(tolerance)));
-    push_min_gap(&mut text, record.keep);
+    push_min_gap(&mut text, record.min_gap);
     text
 }
 

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use colltrans::free::FreeArc;
 use colltrans::glam::DVec3;
 use colltrans::record::{BlockedByRecord, Ending, FreeRecord, FreeRegionRecord};
+use colltrans::removal::directions::FreeArc;
 
-use crate::numbers::{counted, number, six_digits, unit_vector};
+use crate::numbers::{count_text, number, six_digits, unit_vector};
 use crate::report::{overlap_hint, push_line, push_start_overlaps};
 use crate::terminal::escape_line;
 
@@ -46,7 +46,8 @@ pub(crate) fn push_directions(text: &mut String, record: &FreeRecord) {
         let none = free[1] == 0.0 && record.undecided_cells == Some(0);
         put("free", if none { "no region of directions".into() } else { share_text(free) });
     }
-    let count = |cells: Option<u64>| counted(cells.unwrap_or_default() as usize, "cell", "cells");
+    let count =
+        |cells: Option<u64>| count_text(cells.unwrap_or_default() as usize, "cell", "cells");
     put(
         "undecided",
         match record.undecided_cells {
@@ -106,7 +107,7 @@ pub(crate) fn verified_text(record: &FreeRecord) -> String {
         (record.points.len(), "isolated direction", "isolated directions"),
     ];
     for (count, one, many) in kinds.into_iter().filter(|(count, ..)| *count > 0) {
-        let _ = write!(text, ", {}", counted(count, one, many));
+        let _ = write!(text, ", {}", count_text(count, one, many));
     }
     if let Some(undecided) = record.undecided_share.filter(|_| record.undecided_cells > Some(0)) {
         let _ = write!(text, "; undecided: {}", at_most_share(undecided));

@@ -1,6 +1,6 @@
 //! `colltrans distance`, `depth` and `within`: queries of two placed bodies without a direction.
 //!
-//! Two convex meshes become convex bodies, all others parts.
+//! If both meshes are convex and no option requires parts, they become convex bodies, otherwise parts.
 
 mod text;
 
@@ -43,7 +43,7 @@ fn answer_convex(
     load::print_notes(&arguments.places, bodies.iter().flat_map(|part| &part.notes));
     let [moving, fixed] = [0, 1].map(|k| bodies[k].body.at(poses[k]));
     let pair = Pair::new(moving, fixed)?;
-    let answer = question.ask(&pair)?;
+    let answer = question.answer(&pair)?;
     let line = Line::from_record(answer.record(&pair)).with_parts(bodies);
     let surface = |k: usize, origin| placed_surface(&bodies[k].body, &poses[k], origin);
     targets.write_answer(AnswerOutputs {

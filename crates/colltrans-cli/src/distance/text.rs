@@ -2,7 +2,7 @@
 
 use colltrans::record::{DepthRecord, DistanceRecord, Ending, PairQuestion, Record};
 
-use crate::numbers::{known, known_vector, number, unit_vector};
+use crate::numbers::{known_vector, number, rounded_to_error, unit_vector};
 use crate::record::Line;
 use crate::report::{push_features, push_hulls, push_line, push_start_overlaps};
 
@@ -70,7 +70,7 @@ fn push_bounds(text: &mut String, name: &str, [lower, upper]: [Option<f64>; 2], 
         (Some(lower), Some(upper)) => {
             if lower > 0.0 {
                 let value = lower + 0.5 * (upper - lower);
-                push_line(text, name, &known(value, error.max(upper - lower)));
+                push_line(text, name, &rounded_to_error(value, error.max(upper - lower)));
             }
             push_line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
         }

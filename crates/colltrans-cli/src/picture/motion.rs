@@ -28,7 +28,8 @@ pub(crate) struct MotionPicture<'a> {
 /// Returns the picture of an answer as SVG.
 pub(crate) fn draw_motion(picture: MotionPicture<'_>) -> String {
     let MotionPicture { record, motions, surface } = picture;
-    let pose = |k: usize, time: f64| motions[k].at(time).unwrap_or_else(|_| motions[k].start());
+    let pose =
+        |k: usize, time: f64| motions[k].pose_at(time).unwrap_or_else(|_| motions[k].start_pose());
     let stop = match (record.time, record.outcome) {
         (Some(TimeRecord { lower, .. }), _) => lower,
         (None, Ending::Overlapping) => 0.0,

@@ -1,9 +1,9 @@
 //! A picture of parts that need not be convex.
 //!
-//! A depth buffer ([`Raster`]) decides which faces and which pieces of edges are visible, to half a pixel. This works for
-//! all surfaces in all positions, in time linear in faces and pixels. VisibleEdges edges are outlines (between a face that looks
-//! towards the viewer and one that looks away) and creases (bent by more than [`SMOOTH`]). If there are few edges, their
-//! hidden pieces are dashed.
+//! A depth buffer ([`Raster`]) decides which faces and which pieces of edges are visible, to half a pixel. This works
+//! for all surfaces in all positions, in time linear in faces and pixels. The drawn edges are outlines (between
+//! a face towards the viewer and a face away from the viewer) and creases (bent by more than [`SMOOTH`]). If there are
+//! few edges, their hidden pieces are dashed.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -11,7 +11,7 @@ use std::path::Path;
 use colltrans::glam::{DVec2, DVec3};
 use colltrans::record::{Ending, FeaturesRecord, SolidClearanceRecord};
 use colltrans_picture::{
-    Edge, FIXED, MOVING, Page, Paint, Raster, SHADES, SMOOTH, Stroke, View, edges,
+    Edge, FIXED, MOVING, Page, Paint, Raster, SHADES, SMOOTH_COSINE, Stroke, View, edges,
 };
 
 use super::layout::Layout;
@@ -219,7 +219,7 @@ impl DepthView<'_> {
     ) {
         let mut own = Raster::new(self.layout.window);
         self.rasterise(&mut own, ghost, 0);
-        own.keep_before(bodies);
+        own.keep_in_front_of(bodies);
         let drawn = self.edges_of(ghost, edges);
         let mut lines = Vec::new();
         for edge in drawn.outline.iter().chain(&drawn.creases) {
@@ -244,7 +244,7 @@ impl DepthView<'_> {
         for (ends, faces) in edges {
             let is_outline = match faces[..] {
                 [f, g] if is_front(f) != is_front(g) => true,
-                [f, g] if normal(f).dot(normal(g)) >= SMOOTH => continue,
+                [f, g] if normal(f).dot(normal(g)) >= SMOOTH_COSINE => continue,
                 _ => false,
             };
             let line = ends.map(|v| self.project(body.vertices[v as usize]));

@@ -5,7 +5,7 @@
 
 use colltrans::glam::{DVec2, DVec3};
 use colltrans::{Aabb, ConvexPolyhedron, Feature, Pose};
-use colltrans_picture::{Page, Paint, SHADES, SMOOTH, Stroke, View};
+use colltrans_picture::{Page, Paint, SHADES, SMOOTH_COSINE, Stroke, View};
 
 /// A placed body, relative to the origin of the picture.
 #[derive(Debug, Clone)]
@@ -34,7 +34,7 @@ pub(super) enum Mark {
 impl Mark {
     /// Returns the mark of a feature of a convex body.
     pub(super) fn from_feature(feature: Feature, body: &ConvexPolyhedron) -> Self {
-        match (feature, &feature.own_vertices(body)[..]) {
+        match (feature, &feature.vertex_positions(body)[..]) {
             (Feature::Face(face), _) => Self::Face(face.0),
             (Feature::Edge(_), &[a, b]) => Self::Edge([a.0, b.0]),
             (_, vertices) => Self::Vertex(vertices[0].0),
@@ -71,8 +71,8 @@ impl Solid {
 
     /// Returns the center of the bounding box, and half of its diagonal.
     pub(super) fn bounding_sphere(&self) -> (DVec3, f64) {
-        let bounds = Aabb::of_points(self.vertices.iter().copied());
-        (bounds.center(), 0.5 * bounds.size().length())
+        let bounds = Aabb::from_points(self.vertices.iter().copied());
+        (bounds.center(), 0.5 * bounds.side_lengths().length())
     }
 
     /// Returns the mean of the vertices that are farthest along `n`, to within a share of the body's size.
@@ -166,7 +166,7 @@ impl Solid {
     /// Checks whether the normals of two faces differ by more than a smooth edge permits.
     fn is_sharp(&self, f: u32, g: u32) -> bool {
         let normal = |f: u32| self.areas[f as usize].normalize_or_zero();
-        normal(f).dot(normal(g)) < SMOOTH
+        normal(f).dot(normal(g)) < SMOOTH_COSINE
     }
 
     /// Draws the body as a ghost: a translucent outline that hides nothing.

@@ -1,7 +1,7 @@
 //! The content of a picture, taken from the answer.
 
 use colltrans::glam::DVec3;
-use colltrans::{Clearance, Contact, ContactRange, Separated, WhyFree};
+use colltrans::{Clearance, Contact, ContactRange, FreeReason, Separated};
 
 use super::size::working_size;
 use super::solid::Mark;
@@ -65,7 +65,8 @@ impl Subject {
         also: Option<String>,
     ) -> Self {
         let length = picture.cast.direction().length();
-        let (features, points) = (contact.features(picture.cast), contact.points(picture.cast));
+        let (features, points) =
+            (contact.features(picture.cast), contact.witness_points(picture.cast));
         let way = translation_text(contact.translation, length);
         let proof = &contact.certificate;
         let touch = format!(
@@ -100,7 +101,7 @@ impl Subject {
                 Clearance::Overlapping(_) => {
                     format!("{name}: the bodies overlap now, first contact at {way}")
                 }
-                Clearance::Free(WhyFree::Behind(_)) => format!("{name}: lies behind, at {way}"),
+                Clearance::Free(FreeReason::Behind(_)) => format!("{name}: lies behind, at {way}"),
                 _ => format!("{name} at {way}"),
             },
             way,

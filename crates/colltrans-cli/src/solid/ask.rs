@@ -4,7 +4,7 @@ use colltrans::glam::DVec3;
 use colltrans::record::{Ending, FeatureRecord, SolidClearanceRecord, StartOverlapRecord};
 use colltrans::solid::{SolidCast, SolidOverlap, StartOverlap};
 use colltrans::{Cast, Pose, ProofFile, QueryError, Solid};
-use colltrans_mesh::body::between;
+use colltrans_mesh::body::cast_between;
 
 use super::{Body, Piece, renumber_features};
 use crate::failure::{Code, Failure};
@@ -22,7 +22,7 @@ pub(crate) struct PartsQuery<'a> {
     pub(crate) tolerance: Option<f64>,
     pub(crate) ignore_start_overlaps: bool,
     /// The minimum gap, or 0.
-    pub(crate) keep: f64,
+    pub(crate) min_gap: f64,
 }
 
 /// The answer of a [`PartsQuery`].
@@ -43,8 +43,8 @@ impl<'a> PartsQuery<'a> {
         poses: [Pose; 2],
         tolerance: Option<f64>,
     ) -> Self {
-        let (direction, ignore_start_overlaps, keep) = (DVec3::Z, false, 0.0);
-        Self { bodies, poses, direction, tolerance, ignore_start_overlaps, keep }
+        let (direction, ignore_start_overlaps, min_gap) = (DVec3::Z, false, 0.0);
+        Self { bodies, poses, direction, tolerance, ignore_start_overlaps, min_gap }
     }
 
     /// Returns the number of pairs of files.
@@ -57,7 +57,7 @@ impl<'a> PartsQuery<'a> {
         let cast = self.cast_of_bodies()?;
         let tolerance = cast.tolerance();
         let clearance = cast.clearance()?;
-        let mut record = SolidClearanceRecord::of(&clearance, cast.exit(), &cast);
+        let mut record = SolidClearanceRecord::from_clearance(&clearance, cast.exit(), &cast);
         [record.moving, record.fixed] = renumber_features(self.bodies, &mut record.features);
         if self.ignore_start_overlaps || record.outcome == Ending::Overlapping {
             record.start_overlaps = self.start_overlaps(tolerance, pair_done)?;
@@ -102,7 +102,8 @@ impl<'a> PartsQuery<'a> {
         let start =
             if self.ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
         let (moving, fixed) = (moving.at(self.poses[0]), fixed.at(self.poses[1]));
-        between(moving, fixed, self.direction, precisions, tolerance, start)?.keeping(self.keep)
+        cast_between(moving, fixed, self.direction, precisions, tolerance, start)?
+            .with_min_gap(self.min_gap)
     }
 
     /// Returns the overlaps of all pairs of files at the start, the deepest first. Bodies overlap exactly if two of their

@@ -1,7 +1,7 @@
 //! All directions along which a body of parts can leave another, and the proof.
 
-use colltrans::free::{FreeDirections, FreeError, FreeOptions};
 use colltrans::record::FreeRecord;
+use colltrans::removal::directions::{FreeDirections, FreeError, FreeOptions};
 use colltrans::solid::SolidCast;
 use colltrans::{Pose, ProofFile, Solid};
 
@@ -41,7 +41,7 @@ impl PartsDirections<'_> {
         let options =
             self.options.with_tolerance(tolerance).with_start_overlap(cast.options().start_overlap);
         let [moving, fixed] = [0, 1].map(|k| self.bodies[k].solid().at(self.poses[k]));
-        let free = match FreeDirections::of(&moving, &fixed, options) {
+        let free = match FreeDirections::compute(&moving, &fixed, options) {
             Err(FreeError::Overlapping { .. }) => {
                 let overlaps = query.start_overlaps(tolerance, || ())?;
                 let record = FreeRecord::overlapping(tolerance, overlaps);
@@ -50,7 +50,8 @@ impl PartsDirections<'_> {
             free => free?,
         };
         let name = |k: usize, triangle| self.bodies[k].file_of_triangle(triangle);
-        let record = FreeRecord::of(&free, |pair| [name(0, pair[0]), name(1, pair[1])]);
+        let record =
+            FreeRecord::from_directions(&free, |pair| [name(0, pair[0]), name(1, pair[1])]);
         let proof = with_proof.then(|| {
             let [moving, fixed] = self.bodies.map(Body::solids);
             ProofFile::of_free_directions(&free, [&moving, &fixed])

@@ -18,11 +18,11 @@ use colltrans::record::FeaturesRecord;
 use colltrans::solid::{AsSolid, SolidReport};
 use colltrans::{ConvexPolyhedron, Pose, QueryError, Solid};
 use colltrans_mesh::Mesh;
-use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, load_solid};
+use colltrans_mesh::body::{self, BodyError, BodyOptions, Loaded, Note, load_solid};
 
 use crate::body::{load_error_message, note_of_file, option_hint};
 use crate::failure::{Code, Failure};
-use crate::numbers::counted;
+use crate::numbers::count_text;
 pub(crate) use ask::{Answer, PartsQuery};
 pub(crate) use free::{DirectionsAnswer, PartsDirections};
 pub(crate) use motion::PartsMotion;
@@ -81,7 +81,7 @@ impl Body {
 
     /// Builds a body of the surface of a convex one, with precision 0. A point or a segment becomes a facet without area.
     pub(crate) fn from_convex(body: &ConvexPolyhedron) -> Result<Self, String> {
-        let surface = body.as_surface().map_err(|error| Refused::Solid(error).to_string())?;
+        let surface = body.as_surface().map_err(|error| BodyError::Solid(error).to_string())?;
         let piece = Piece::new(PathBuf::new(), surface.clone(), 0.0);
         Self::from_pieces(vec![piece], Vec::new())
     }
@@ -174,7 +174,7 @@ pub(crate) fn description_lines(mesh: &Mesh) -> Vec<(&'static str, String)> {
         Err(refused) => {
             let mut lines = vec![("solid", format!("no: {refused}{}", option_hint(&refused)))];
             let open = body::solid(mesh, &BodyOptions::default().with_open(true));
-            let surface = open.ok().and_then(|open| open.body.report().surface());
+            let surface = open.ok().and_then(|open| open.body.report().open_shell_summary());
             lines.extend(surface.map(|surface| ("with --open", surface)));
             return lines;
         }
@@ -192,15 +192,15 @@ pub(crate) fn description_lines(mesh: &Mesh) -> Vec<(&'static str, String)> {
 /// Returns the numbers of shells, of cavities and of through holes.
 fn shell_counts(report: &SolidReport) -> String {
     let cavities = report.shells.iter().filter(|shell| shell.volume < 0.0).count();
-    let mut text = counted(report.shells.len() - cavities, "shell", "shells");
+    let mut text = count_text(report.shells.len() - cavities, "shell", "shells");
     if cavities > 0 {
-        let _ = write!(text, ", {}", counted(cavities, "cavity", "cavities"));
+        let _ = write!(text, ", {}", count_text(cavities, "cavity", "cavities"));
     }
-    let holes = counted(report.holes_through() as usize, "hole", "holes");
+    let holes = count_text(report.holes_through() as usize, "hole", "holes");
     let _ = write!(text, ", {holes} through");
     let unknown = report.shells.iter().filter(|shell| shell.holes_through.is_none()).count();
     if unknown > 0 {
-        let shells = counted(unknown, "shell", "shells");
+        let shells = count_text(unknown, "shell", "shells");
         let _ = write!(text, " (not counted in {shells} that touch themselves)");
     }
     text

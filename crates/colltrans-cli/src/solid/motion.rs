@@ -19,7 +19,7 @@ pub(crate) struct PartsMotion<'a> {
     pub(crate) clears: bool,
     pub(crate) ignore_start_overlaps: bool,
     /// The minimum gap, or 0.
-    pub(crate) keep: f64,
+    pub(crate) min_gap: f64,
 }
 
 impl PartsMotion<'_> {
@@ -55,16 +55,16 @@ impl PartsMotion<'_> {
 
     /// Returns the cast of the library.
     pub(crate) fn cast(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
-        let [moving, fixed] = [0, 1].map(|k| self.bodies[k].solid().along(&self.motions[k]));
+        let [moving, fixed] = [0, 1].map(|k| self.bodies[k].solid().with_motion(&self.motions[k]));
         let precisions = self.bodies.map(Body::precision);
-        between_motions(moving, fixed, precisions, self.tolerance)?.keeping(self.keep)
+        between_motions(moving, fixed, precisions, self.tolerance)?.with_min_gap(self.min_gap)
     }
 
     /// Returns a query at the start of the motions whose direction does not matter.
     fn query_at_start(&self) -> PartsQuery<'_> {
-        let poses = self.motions.each_ref().map(Motion::start);
+        let poses = self.motions.each_ref().map(Motion::start_pose);
         PartsQuery {
-            keep: self.keep,
+            min_gap: self.min_gap,
             ..PartsQuery::without_direction(self.bodies, poses, self.tolerance)
         }
     }

@@ -20,7 +20,7 @@ impl<'a> PartsPair<'a> {
     /// Answers the question, with the names of files.
     pub(crate) fn answer(&self, question: PairQuestion) -> Result<Record, QueryError> {
         let pair = self.pair()?;
-        self.with_names(question.ask_solids(&pair)?.record(&pair)?)
+        self.with_names(question.answer_solids(&pair)?.record(&pair)?)
     }
 
     /// Answers the question, and proves the distance or its comparison with a length.

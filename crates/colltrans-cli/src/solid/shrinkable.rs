@@ -4,11 +4,11 @@ use std::sync::Mutex;
 
 use colltrans::Solid;
 
-use crate::numbers::counted;
+use crate::numbers::count_text;
 
 /// Maximum number of stored reports. Tolerances are few, because they follow from the files or an option.
 const MAX_REPORTS: usize = 16;
-/// Offsets below this share of the part's size only compensate for the rounding of poses.
+/// Offsets below this share of the part's largest coordinate only compensate for the rounding of poses.
 const ROUNDING_SHARE: f64 = 1.0 / (1_u64 << 32) as f64;
 
 /// Reports of one part by the amount of its offset.
@@ -45,15 +45,15 @@ fn cache_amount(solid: &Solid, amount: f64) -> f64 {
 fn offset_report(solid: &Solid, amount: f64) -> Option<String> {
     let report = solid.shrink_report(amount);
     let mut text = Vec::new();
-    if let Some(first) = report.stuck.first() {
+    if let Some(first) = report.fixed_vertices.first() {
         let (one, many) = ("vertex stays in place", "vertices stay in place");
-        let vertices = counted(report.stuck.len(), one, many);
+        let vertices = count_text(report.fixed_vertices.len(), one, many);
         text.push(format!("{vertices}, for example at a saddle (vertex {first})"));
     }
     if let Some(first) = report.inverted.first() {
         let one = "face turns inside out or passes through another";
         let many = "faces turn inside out or pass through others";
-        let faces = counted(report.inverted.len(), one, many);
+        let faces = count_text(report.inverted.len(), one, many);
         text.push(format!(
             "{faces}, because the part is thinner than the tolerance (face {first})"
         ));

@@ -48,8 +48,8 @@ fn scene_queries_find_nearest_near_and_first_obstacles() {
     let down = ask("clearance", &["--direction", "-z"]);
     assert_eq!((&down["outcome"], &down["fixed"]), (&json!("blocked"), &json!("cube 12")));
     assert!(number(&down, "distance") <= 3.0 && number(&down, "distance") > 2.999, "{down}");
-    let kept = ask("clearance", &["--direction", "-z", "--keep", "0.5"]);
-    assert!((number(&kept, "distance") - 2.5).abs() < 1e-9 && kept["keep"] == 0.5, "{kept}");
+    let kept = ask("clearance", &["--direction", "-z", "--min-gap", "0.5"]);
+    assert!((number(&kept, "distance") - 2.5).abs() < 1e-9 && kept["min_gap"] == 0.5, "{kept}");
     assert_eq!(ask("clearance", &["--direction", "z"])["outcome"], "free");
     // The body that is not convex is named by its file, the points by their line.
     let place = |pose: &str| {
@@ -190,8 +190,8 @@ fn unknown_options_suggest_their_command() {
     let folder = folder();
     let folder = folder.path();
     let two = |command, more: &[&'static str]| [&[command, "cube.off", "cube.off"], more].concat();
-    let keep = ["--keep belongs to `colltrans clearance`, `colltrans cast`"];
-    refused(folder, &two("distance", &["--keep", "0.5"]), 2, &keep);
+    let min_gap = ["--min-gap belongs to `colltrans clearance`, `colltrans cast`"];
+    refused(folder, &two("distance", &["--min-gap", "0.5"]), 2, &min_gap);
     refused(folder, &two("cast", &["--length=3"]), 2, &["--length belongs to `colltrans within`"]);
     let third = two("cast", &["dent.off", "--direction", "x"]);
     refused(folder, &third, 2, &["colltrans clearance MOVING --among"]);
@@ -199,7 +199,7 @@ fn unknown_options_suggest_their_command() {
     assert!(unknown.contains("similar argument exists: '--from'"), "{unknown}");
     refused(
         folder,
-        &two("cast", &["--direction", "x", "--keep", "1e70"]),
+        &two("cast", &["--direction", "x", "--min-gap", "1e70"]),
         2,
         &["the minimum gap 1000"],
     );

@@ -411,7 +411,9 @@ fn motion_queries_are_answered_or_rejected() {
         .map(|(motion, _)| asked(&format!(r#""moving_motion":{motion},{there}"#)))
         .chain([
             asked(&format!(r#""fixed_motion":{{"slide":{{"by":[-4,0,0]}}}},{there}"#)),
-            asked(&format!(r#""moving_motion":{turn},"fixed_motion":{turn},{there},"keep":0.5"#)),
+            asked(&format!(
+                r#""moving_motion":{turn},"fixed_motion":{turn},{there},"min_gap":0.5"#
+            )),
             asked(&format!(r#""moving_motion":{turn}"#)),
             line(r#"{"solid":"cube.off"}"#, &format!(r#""moving_motion":{},{there}"#, good[1].0)),
         ])
@@ -429,7 +431,7 @@ fn motion_queries_are_answered_or_rejected() {
     assert!(lower <= 0.5 && 0.5 <= upper && upper - lower < 1e-13, "{}", results[0]);
     assert_eq!(results[0]["normal"], serde_json::json!([1.0, 0.0, 0.0]));
     assert_eq!(results[0]["features"]["fixed"]["kind"], "face");
-    assert_eq!(results[9]["keep"], 0.5);
+    assert_eq!(results[9]["min_gap"], 0.5);
 
     let moved = format!(r#""moving_motion":{turn}"#);
     let bad = [
@@ -438,8 +440,11 @@ fn motion_queries_are_answered_or_rejected() {
             asked(&format!(r#"{moved},"direction":[1,0,0]"#)),
             "`direction` does not belong to this query",
         ),
-        (asked(&format!(r#"{moved},"keep":1,"tolerance":1"#)), "either `keep` or `tolerance`"),
-        (asked(&format!(r#"{moved},"keep":-1"#)), "-1"),
+        (
+            asked(&format!(r#"{moved},"min_gap":1,"tolerance":1"#)),
+            "either `min_gap` or `tolerance`",
+        ),
+        (asked(&format!(r#"{moved},"min_gap":-1"#)), "-1"),
         (asked(&moved.replace("axis\":[0,0,1]", "axis\":[0,0,0]")), "moving_motion: the axis"),
         (asked(&moved.replace('6', "1e9")), "moving_motion: the angle"),
         (

@@ -9,7 +9,7 @@ mod directions;
 mod distance;
 mod example_parts;
 mod help;
-mod keep;
+mod min_gap;
 mod motion;
 mod newcomers;
 mod path;

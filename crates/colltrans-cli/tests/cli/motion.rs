@@ -36,7 +36,7 @@ fn angles_are_in_degrees() {
     let rest = &["--fixed-pose=0,0,-1", "--turn", "0.5,0.5,0", "z", "360"];
     assert_eq!(told(rest)["outcome"], "grazing");
     assert_eq!(told(&[&rest[..], &["--tolerance", "1e-9"]].concat())["outcome"], "free");
-    let screw = ["--fixed-pose=0,0,-1.5", "--screw", "0,0,0", "-z", "90", "1", "--keep", "0.25"];
+    let screw = ["--fixed-pose=0,0,-1.5", "--screw", "0,0,0", "-z", "90", "1", "--min-gap", "0.25"];
     let lower = told(&screw)["time"]["lower"].as_f64().unwrap();
     assert!((lower - 0.25).abs() < 1e-12, "{lower}");
     let thrown = ["--moving-pose=-4,0,0", "--thrown", "-3.5,0.5,0.5", "8,0,0", "360,0,0"];
@@ -99,7 +99,7 @@ fn free_answer_states_gap_or_tolerance() {
     };
     let never = |what: &str| format!("free: the bodies never {what} throughout the motion");
     assert_eq!(free(&["--fixed-pose=4,0,0"]), never("meet"));
-    assert_eq!(free(&["--fixed-pose=4,0,0", "--keep", "0.5"]), never("come as near as 0.5"));
+    assert_eq!(free(&["--fixed-pose=4,0,0", "--min-gap", "0.5"]), never("come as near as 0.5"));
     let deep = free(&["--fixed-pose=0.75,0,0", "--tolerance", "0.9"]);
     assert_eq!(deep, never("overlap by more than 0.9"));
 }
@@ -310,14 +310,14 @@ fn replayed_motion_has_the_same_bounds() {
     let start = Pose::from_translation(DVec3::new(-4.0, 0.5, 0.0)).unwrap();
     let screw = Motion::screw(start, DVec3::Z, DVec3::X, 0.5, 8.0).unwrap();
     let cast = MotionCast::new(cube.along(&screw), cube.at(Pose::IDENTITY)).unwrap();
-    let cast = cast.keeping(0.125).unwrap();
-    fs::write(folder.path().join("case.json"), MotionCase::of(&cast).to_json()).unwrap();
+    let cast = cast.with_min_gap(0.125).unwrap();
+    fs::write(folder.path().join("case.json"), MotionCase::from_cast(&cast).to_json()).unwrap();
     let found = read(&answered(folder.path(), &["replay", "case.json", "--json"]));
     let MotionOutcome::Contact(contact) = cast.first_contact().unwrap() else { panic!("{found}") };
     assert_eq!(found["time"], json!({ "lower": contact.lower, "upper": contact.upper }));
-    assert_eq!(found["keep"], 0.125);
+    assert_eq!(found["min_gap"], 0.125);
     assert!(answered(folder.path(), &["replay", "case.json"]).starts_with("contact\n  time"));
-    let broken = MotionCase::of(&cast).to_json().replace("\"rate\":0.5", "\"rate\":1e9");
+    let broken = MotionCase::from_cast(&cast).to_json().replace("\"rate\":0.5", "\"rate\":1e9");
     fs::write(folder.path().join("case.json"), broken).unwrap();
     refused(folder.path(), &["replay", "case.json"], 3, &["is not a number from -1e5 to 1e5"]);
 }
@@ -357,8 +357,8 @@ fn invalid_motion_arguments_are_rejected() {
     assert!(ask(&["--turn", "0,0,0", "z", "x"]).contains("--turn: `x` is not a number of degrees"));
     assert!(ask(&["--turn", "0,0,0", "z", "1e9"]).contains("is not a number from -1e5 to 1e5"));
     assert!(ask(&["--slide", "1,0,0", "--turn", "0,0,0", "z", "1"]).contains("cannot be used"));
-    let keeps = ["--slide", "1,0,0", "--keep", "1", "--tolerance", "1"];
-    assert!(ask(&keeps).contains("either --keep or --tolerance"));
+    let keeps = ["--slide", "1,0,0", "--min-gap", "1", "--tolerance", "1"];
+    assert!(ask(&keeps).contains("either --min-gap or --tolerance"));
     assert!(
         ask(&["--slide", "1,0,0", "--open", "--hull"])
             .contains("--ignore-start-overlaps require parts")
@@ -369,7 +369,7 @@ fn invalid_motion_arguments_are_rejected() {
 fn help_lists_motions_before_outputs_and_poses() {
     let help = answered(folder().path(), &["motion", "--help"]);
     let at = |words: &str| help.find(words).unwrap_or_else(|| panic!("no {words} in {help}"));
-    assert!(at("--turn") < at("--keep") && at("--keep") < at("Poses and scales"));
+    assert!(at("--turn") < at("--min-gap") && at("--min-gap") < at("Poses and scales"));
     assert!(at("--fixed-turn") < at("Poses and scales"));
 }
 

@@ -22,7 +22,7 @@ fn arm_touches_a_wire_on_its_path() {
     let told = read(&answered(folder.path(), &["path", &arm, &rows, &wire, "--json"]));
     assert_eq!((&told["pair"], &told["pairs"]), (&json!(["tool", "wire"]), &json!(6)));
     assert_eq!(told["place"]["row"], 0);
-    assert!(told.get("keep").is_none());
+    assert!(told.get("min_gap").is_none());
     // Links with a joint between them touch, so they are skipped and reported.
     let touching = json!([["base", "upper"], ["upper", "fore"], ["fore", "tool"]]);
     assert_eq!(told["left_out"], touching);
@@ -35,11 +35,11 @@ fn arm_touches_a_wire_on_its_path() {
     let alone = answered(folder.path(), &["path", &arm, &rows]);
     assert!(alone.starts_with("free: no two bodies of the checked pairs meet on"), "{alone}");
     assert!(alone.contains("  left out     base, upper; upper, fore; fore, tool\n"), "{alone}");
-    let kept = ["path", &arm, &rows, &wire, "--keep", "0.2"];
+    let kept = ["path", &arm, &rows, &wire, "--min-gap", "0.2"];
     let text = answered(folder.path(), &kept);
     assert!(text.contains("  minimum gap  0.2, at which"), "{text}");
     let kept = read(&answered(folder.path(), &[&kept[..], &["--json"]].concat()));
-    assert_eq!((&kept["outcome"], &kept["keep"]), (&json!("contact"), &json!(0.2)));
+    assert_eq!((&kept["outcome"], &kept["min_gap"]), (&json!("contact"), &json!(0.2)));
     let small = ["path", &arm, &rows, &wire, "--scene-scale", "0.001", "--json"];
     assert_eq!(read(&answered(folder.path(), &small))["outcome"], "free");
 }
@@ -282,7 +282,7 @@ fn pairs_within_the_gap_at_the_start_are_too_near() {
     boxes(folder.path(), &["a", "b"], &slide("s", "a", "b", 3.0));
     fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
     fs::write(folder.path().join("none.srdf"), "<robot name=\"r\"/>").unwrap();
-    let asked = ["path", "boxes.urdf", "rows.csv", "--srdf", "none.srdf", "--keep", "2.5"];
+    let asked = ["path", "boxes.urdf", "rows.csv", "--srdf", "none.srdf", "--min-gap", "2.5"];
     let text = answered(folder.path(), &asked);
     assert!(text.starts_with("overlapping: 1 pair overlaps or is as near as 2.5 where"), "{text}");
     assert!(text.contains("too near"), "{text}");

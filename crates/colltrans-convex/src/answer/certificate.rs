@@ -17,7 +17,7 @@ use thiserror::Error;
 use crate::body::{InputFacet, ObstacleId};
 use crate::setting::error::QueryError;
 use crate::setting::{Setting, VertexPair};
-use colltrans_kernel::extent;
+use colltrans_kernel::height_bounds;
 use colltrans_kernel::noise::{self, Noise};
 use colltrans_kernel::pose::MAX_STRETCH;
 
@@ -55,7 +55,10 @@ pub struct Certificate {
     ///
     /// Infinite in a [`Grazing`](crate::Grazing) whose shadows overlap by less than rounding error. Such a
     /// certificate claims only `lower`.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(with = "colltrans_kernel::serialization::null_as_infinity")
+    )]
     pub upper: f64,
     /// Bound on the part of `upper - lower` that is due to rounding, in multiples of the direction.
     ///
@@ -159,19 +162,19 @@ pub enum CertificateError {
         derived: f64,
     },
     /// The proof is for bodies that are shrunk by another tolerance.
-    #[error("the proof is for a tolerance of {claimed:?}, not {asked:?}")]
+    #[error("the proof is for a tolerance of {claimed:?}, not {expected:?}")]
     OtherTolerance {
         /// Tolerance of the proof.
         claimed: f64,
         /// Tolerance of the cast.
-        asked: f64,
+        expected: f64,
     },
     /// The query that the proof is about is invalid.
     #[error("the query of the proof is invalid: {0}")]
     Query(#[from] QueryError),
     /// A claim about the bodies in their given poses does not hold.
     #[error("the claim about the bodies in their given poses does not hold")]
-    Start,
+    StartClaim,
     /// An entry of a cover does not hold, or does not fit the bodies.
     #[error("entry {entry} of the cover does not hold, or does not fit the bodies")]
     Cover {
@@ -230,7 +233,7 @@ impl CertificateError {
     /// Builds [`Self::Facets`] from the triangles of the moving and of the fixed body.
     #[doc(hidden)]
     #[inline]
-    pub const fn triangles([moving, fixed]: [u32; 2]) -> Self {
+    pub const fn blocking_triangles([moving, fixed]: [u32; 2]) -> Self {
         Self::Facets { moving, fixed }
     }
 }
@@ -247,7 +250,7 @@ pub enum Proof<'a> {
 /// Implements `From<&T>` for an enum of proofs, for the type `T` of each listed variant.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! checked_as {
+macro_rules! impl_from_proofs {
     ($($proof:ident { $($variant:ident($of:ty)),+ $(,)? }),+) => { $($(
         impl<'a> From<&'a $of> for $proof<'a> {
             fn from(of: &'a $of) -> Self {
@@ -257,9 +260,9 @@ macro_rules! checked_as {
     )+)+ };
 }
 #[doc(hidden)]
-pub use checked_as;
+pub use impl_from_proofs;
 
-checked_as!(Proof { Contact(Certificate), Separation(Separation) });
+impl_from_proofs!(Proof { Contact(Certificate), Separation(Separation) });
 
 /// The distance of the bodies along a normal, with its error.
 #[derive(Debug, Clone, Copy)]
@@ -288,7 +291,7 @@ impl NormalBound {
     ) -> Self {
         let [p, q] = setting.vertices(support);
         let distance = (normals[1].dot(q) - normals[0].dot(p)) + normal.dot(setting.offset);
-        Self { distance, error: noise.lowered() + beyond }
+        Self { distance, error: noise.lower_bound_margin() + beyond }
     }
 
     /// Returns the lower bound of the collision translation that the normal proves, in multiples of the
@@ -305,7 +308,7 @@ impl NormalBound {
 pub fn gap_rounding(setting: &Setting, normal: DVec3, noise: Noise, widening: f64) -> f64 {
     // Without widening, which is the usual case, the lateral part is not needed.
     let across = if widening == 0.0 { 0.0 } else { normal.cross(setting.unit).length() };
-    noise.gap(across, widening) / normal.dot(setting.direction)
+    noise.max_bound_gap(across, widening) / normal.dot(setting.direction)
 }
 
 /// Checks whether numbers are weights of a mean: none is negative, and their sum is 1 to within rounding.
@@ -321,12 +324,12 @@ impl Certificate {
         self.upper - self.lower
     }
 
-    /// Checks the certificate for [`Cast::verify`](crate::Cast::verify), with the minimum gap `keep` or 0.
+    /// Checks the certificate for [`Cast::verify`](crate::Cast::verify), with the minimum gap `min_gap` or 0.
     /// Returns the proven difference of the bounds.
     pub(crate) fn verify_with_gap(
         &self,
         setting: &Setting,
-        keep: f64,
+        min_gap: f64,
     ) -> Result<f64, CertificateError> {
         let normal = self.normal;
         let steepness = normal.dot(setting.direction);
@@ -337,18 +340,19 @@ impl Certificate {
         if self.lower > self.upper {
             return Err(CertificateError::Order { lower: self.lower, upper: self.upper });
         }
-        let noise = Noise::of(setting.scale() + keep);
-        let gap_bound = (keep > 0.0).then(|| self.upper_bound_within_gap(setting, keep, noise));
+        let noise = Noise::for_size(setting.size() + min_gap);
+        let gap_bound =
+            (min_gap > 0.0).then(|| self.upper_bound_within_gap(setting, min_gap, noise));
         let upper = match gap_bound {
             Some(Ok(upper)) => upper,
-            Some(Err(error)) if !noise.is_slight(keep) => return Err(error),
+            Some(Err(error)) if !noise.is_below_noise(min_gap) => return Err(error),
             // Bodies in contact are within any gap. For a slight gap, contact may be the only provable claim.
             _ => self.proven_upper(setting)? + noise.checked_upper_bound_margin() / steepness,
         };
-        let lower = proven_lower(setting, normal, keep)?;
+        let lower = proven_lower(setting, normal, min_gap)?;
         // For a slight gap, the upper bound may be that of contact. The bounds then differ by the gap as
         // well.
-        let gap_share = if noise.is_slight(keep) { 2.0 * keep / steepness } else { 0.0 };
+        let gap_share = if noise.is_below_noise(min_gap) { 2.0 * min_gap / steepness } else { 0.0 };
         let derived = max_rounding(setting, normal, noise) + gap_share;
         if self.lower.is_nan() || self.lower > lower {
             return Err(CertificateError::Bound { proven: lower, claimed: self.lower });
@@ -362,22 +366,22 @@ impl Certificate {
         Ok(upper - lower)
     }
 
-    /// Returns the claimed upper bound if the distance of the witness points is at most `keep` after this
+    /// Returns the claimed upper bound if the distance of the witness points is at most `min_gap` after this
     /// translation. An infinite bound is accepted.
     fn upper_bound_within_gap(
         &self,
         setting: &Setting,
-        keep: f64,
+        min_gap: f64,
         noise: Noise,
     ) -> Result<f64, CertificateError> {
         let mean = self.weighted_mean(setting)?;
         let residual =
             (mean - setting.direction * self.upper).length() + noise.checked_gap_margin();
         // An infinite bound claims nothing. Its residual is not finite.
-        if self.upper == f64::INFINITY || residual <= keep {
+        if self.upper == f64::INFINITY || residual <= min_gap {
             Ok(self.upper)
         } else {
-            Err(CertificateError::Residual { residual, tolerance: keep })
+            Err(CertificateError::Residual { residual, tolerance: min_gap })
         }
     }
 
@@ -392,7 +396,7 @@ impl Certificate {
         let tolerance = if self.upper == f64::INFINITY {
             noise.widened_residual_tolerance()
         } else {
-            noise.residual()
+            noise.residual_tolerance()
         };
         if residual <= tolerance {
             Ok(upper)
@@ -418,34 +422,34 @@ impl Certificate {
             if !exists {
                 return Err(CertificateError::UnknownVertex { pair });
             }
-            mean += setting.terms(vertices).point() * (weight / sum);
+            mean += setting.terms(vertices).rounded_point() * (weight / sum);
         }
         Ok(mean)
     }
 }
 
 /// Computes the lower bound of the translation that the plane with this normal proves, for bodies with the
-/// minimum gap `keep`.
+/// minimum gap `min_gap`.
 ///
 /// Returns [`CertificateError::Normal`] if `n . d` may not be positive.
-fn proven_lower(setting: &Setting, normal: DVec3, keep: f64) -> Result<f64, CertificateError> {
-    let [least, most] = extent::dot(normal, setting.direction);
+fn proven_lower(setting: &Setting, normal: DVec3, min_gap: f64) -> Result<f64, CertificateError> {
+    let [least, most] = height_bounds::dot_bounds(normal, setting.direction);
     if least <= 0.0 {
         return Err(CertificateError::Normal { normal });
     }
-    let distance = reduced_by_gap(setting.distance_along(normal), normal, keep);
+    let distance = reduced_by_gap(setting.distance_along(normal), normal, min_gap);
     // The larger divisor gives the lower quotient if the distance is positive, the smaller one if it is
     // negative.
     Ok((distance / if distance < 0.0 { least } else { most }).next_down())
 }
 
-/// Returns a lower bound of `distance - keep * |normal|`.
-fn reduced_by_gap(distance: f64, normal: DVec3, keep: f64) -> f64 {
-    if keep == 0.0 {
+/// Returns a lower bound of `distance - min_gap * |normal|`.
+fn reduced_by_gap(distance: f64, normal: DVec3, min_gap: f64) -> f64 {
+    if min_gap == 0.0 {
         return distance;
     }
-    let [_, square] = extent::dot(normal, normal);
-    (distance - (keep * square.sqrt().next_up()).next_up()).next_down()
+    let [_, square] = height_bounds::dot_bounds(normal, normal);
+    (distance - (min_gap * square.sqrt().next_up()).next_up()).next_down()
 }
 
 /// Returns the largest rounding that a certificate may state. The field proves nothing.
@@ -453,9 +457,9 @@ fn reduced_by_gap(distance: f64, normal: DVec3, keep: f64) -> f64 {
 /// The limit is twice the rounding that a search states. It assumes that the bodies reach beyond their
 /// support points by at most the tolerance of coplanar vertices.
 fn max_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
-    let rounding =
-        (noise.raised() + noise.lowered() + noise.beyond()) / normal.dot(setting.direction);
-    2.0 * (gap_rounding(setting, normal, noise, noise.widest()) + rounding)
+    let rounding = (noise.upper_bound_margin() + noise.lower_bound_margin() + noise.max_excess())
+        / normal.dot(setting.direction);
+    2.0 * (gap_rounding(setting, normal, noise, noise.max_widening_half_side()) + rounding)
 }
 
 /// Checks that a normal is a unit vector and orthogonal to the direction, to within rounding.
@@ -479,11 +483,11 @@ pub fn check_lateral_normal(setting: &Setting, normal: DVec3) -> Result<(), Cert
 /// subtracted.
 #[inline]
 pub fn shadow_gap(setting: &Setting, normal: DVec3) -> f64 {
-    let [low, high] = extent::dot(normal, setting.direction);
+    let [low, high] = height_bounds::dot_bounds(normal, setting.direction);
     let along = low.abs().max(high.abs()) / setting.length * ROUND_UP;
-    let closing = along * (setting.scale() * MAX_STRETCH) * ROUND_UP;
+    let closing = along * (setting.size() * MAX_STRETCH) * ROUND_UP;
     let gap = (setting.distance_along(normal) - closing).next_down();
-    let [least, most] = extent::dot(normal, normal);
+    let [least, most] = height_bounds::dot_bounds(normal, normal);
     let across = if gap > 0.0 {
         most.sqrt().next_up()
     } else {
@@ -493,16 +497,16 @@ pub fn shadow_gap(setting: &Setting, normal: DVec3) -> f64 {
 }
 
 impl Separation {
-    /// Checks the separation for [`Cast::verify`](crate::Cast::verify), with the minimum gap `keep` or 0.
+    /// Checks the separation for [`Cast::verify`](crate::Cast::verify), with the minimum gap `min_gap` or 0.
     /// Returns the proven margin.
     pub(crate) fn verify_with_gap(
         &self,
         setting: &Setting,
-        keep: f64,
+        min_gap: f64,
     ) -> Result<f64, CertificateError> {
         check_lateral_normal(setting, self.normal)?;
         let (proven, claimed) = (shadow_gap(setting, self.normal), self.margin);
-        if claimed > keep && claimed <= proven {
+        if claimed > min_gap && claimed <= proven {
             Ok(proven)
         } else {
             Err(CertificateError::Bound { proven, claimed })

@@ -13,7 +13,7 @@ use derive_where::derive_where;
 /// | | [`ConvexPolyhedron`] | `Solid` |
 /// |---|---|---|
 /// | `Blocked` | [`Contact`] | `SolidContact` |
-/// | `Free` | [`WhyFree`] | `SolidFree`: a separating plane, if one was found |
+/// | `Free` | [`FreeReason`] | `SolidFree`: a separating plane, if one was found |
 /// | `Overlapping` | [`OverlapAhead`] | `SolidOverlap` |
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
@@ -28,15 +28,16 @@ pub enum Clearance<B: Body = ConvexPolyhedron> {
         /// Safe translation, in multiples of the direction: the lower bound of the contact, or 0 if that is
         /// negative.
         ///
-        /// It is less than the estimate, [`Contact::translation`] or `SolidContact::translation`, by the
-        /// rounding error.
+        /// Unless it is 0, it is at most the estimate, [`Contact::translation`] or
+        /// `SolidContact::translation`.
         distance: f64,
         /// The blocking contact.
         contact: B::Contact,
     },
     /// The body can move without limit.
     Free(B::Free),
-    /// The bodies overlap in their current poses by more than the tolerance.
+    /// The bodies overlap in their current poses: convex bodies by more than the rounding error, solids by more
+    /// than the tolerance.
     Overlapping(B::Overlap),
 }
 
@@ -47,7 +48,7 @@ pub enum Clearance<B: Body = ConvexPolyhedron> {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
-pub enum WhyFree {
+pub enum FreeReason {
     /// The body slides along the other one or past it, within the graze tolerance.
     Slides(Grazing),
     /// The last contact, that of the [reversed](crate::Cast::reversed) cast, lies behind or at the current
@@ -86,7 +87,7 @@ impl Clearance {
         if last.translation < -last.certificate.rounding {
             Self::Overlapping(OverlapAhead { first, last })
         } else {
-            Self::Free(WhyFree::Behind(last))
+            Self::Free(FreeReason::Behind(last))
         }
     }
 }

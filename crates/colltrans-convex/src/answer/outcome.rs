@@ -134,13 +134,13 @@ impl Separated {
 }
 
 impl RangeEnd for Contact {
-    fn bounded(&self) -> Bounded {
+    fn bounded_translation(&self) -> Bounded {
         Self::bounded(self)
     }
 }
 
 impl RangeEnd for Grazing {
-    fn bounded(&self) -> Bounded {
+    fn bounded_translation(&self) -> Bounded {
         self.contact.bounded()
     }
 }

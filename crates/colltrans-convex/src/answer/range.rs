@@ -3,7 +3,7 @@
 use derive_where::derive_where;
 use glam::DVec3;
 
-use super::clearance::{Clearance, WhyFree};
+use super::clearance::{Clearance, FreeReason};
 use super::outcome::Outcome;
 use crate::body::{Body, ConvexPolyhedron};
 use colltrans_kernel::bounded::{Bounded, RangeEnd};
@@ -50,8 +50,12 @@ impl<B: Body> ContactRange<B> {
     /// proven bounds. `None` if the bodies never meet.
     pub fn bounds(&self) -> Option<[Bounded; 2]> {
         match self {
-            Self::Contact { first, last } => Some([first.bounded(), last.exit()]),
-            Self::Grazing { first, last } => Some([first.bounded(), last.exit()]),
+            Self::Contact { first, last } => {
+                Some([first.bounded_translation(), last.exit_translation()])
+            }
+            Self::Grazing { first, last } => {
+                Some([first.bounded_translation(), last.exit_translation()])
+            }
             Self::Separated(_) => None,
         }
     }
@@ -64,8 +68,8 @@ impl ContactRange {
         match *self {
             Self::Contact { first, last } => Clearance::blocked_by(&first)
                 .unwrap_or_else(|| Clearance::beyond_first(first, last)),
-            Self::Grazing { first, .. } => Clearance::Free(WhyFree::Slides(first)),
-            Self::Separated(separated) => Clearance::Free(WhyFree::Separated(separated)),
+            Self::Grazing { first, .. } => Clearance::Free(FreeReason::Slides(first)),
+            Self::Separated(separated) => Clearance::Free(FreeReason::Separated(separated)),
         }
     }
 }
@@ -76,7 +80,9 @@ impl ContactRange {
 #[non_exhaustive]
 pub struct DirectionalDepth {
     /// Distance by which the moving body must move back until the overlap ends, in multiples of the
-    /// direction. It is never less than the true depth, and 0 if the bodies do not overlap.
+    /// direction. If the clearance is [`Clearance::Overlapping`], it is not less than the true depth. Otherwise it
+    /// is 0, also for an overlap within the rounding error or the graze
+    /// tolerance.
     pub depth: f64,
     /// The clearance from which the depth is derived, with its proof.
     pub clearance: Clearance,
@@ -90,7 +96,7 @@ pub struct Intersection<B: Body = ConvexPolyhedron> {
     /// Whether the bodies, as closed sets, have a common point. Exact for solids, to within rounding error
     /// for convex bodies.
     pub meets: bool,
-    /// The evidence: a [`CentralCast`] of convex bodies, a `SolidMeeting` of solids.
+    /// The evidence: a [`CentralCast`] of convex bodies, a `SolidIntersection` of solids.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub evidence: B::Evidence,
 }

@@ -23,7 +23,8 @@ pub enum Solver {
     /// degenerate. A body's first cast that solves a planar problem builds its sections
     /// ([`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections)).
     Cta,
-    /// Portal refinement from scratch, starting from the contact normal of two ellipsoids.
+    /// Portal refinement. In a [`Tracker`](crate::Tracker) it can start from the last answer. Otherwise it starts
+    /// from a pair of large opposed faces if this pair gives the answer, else from a guess of the contact normal.
     Portal,
 }
 
@@ -96,9 +97,12 @@ pub enum StartedFrom {
     Scratch,
 }
 
-colltrans_kernel::written::named!("solver", Solver { Auto: "auto", Cta: "cta", Portal: "portal" });
+colltrans_kernel::serialization::named!(
+    "solver",
+    Solver { Auto: "auto", Cta: "cta", Portal: "portal" }
+);
 
-colltrans_kernel::written::named!(
+colltrans_kernel::serialization::named!(
     "start",
     StartedFrom {
         Difference: "difference",

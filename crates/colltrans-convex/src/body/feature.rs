@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::{ConvexPolyhedron, FaceId, InputVertex};
 
-/// A vertex, an edge or a face of a body in an answer, given **by input numbers**: the numbers of the points or
-/// mesh vertices from which the body was made. This holds for convex bodies and for solids.
+/// A vertex, an edge or a face of a body in an answer. Vertices are given **by input numbers**: the numbers of the
+/// points or mesh vertices from which the body was made. This holds for convex bodies and for solids.
 ///
 /// Among vertices with the same coordinates, the first one counts. An edge of a `Solid` runs from corner to corner,
 /// even if its mesh subdivides the edge. A face is the whole polygon that its coplanar facets form.
@@ -56,7 +56,7 @@ pub(crate) enum OwnFeature {
 
 impl OwnFeature {
     /// Returns the feature with input numbers in place of the body's own vertex numbers.
-    pub(crate) fn named(self, body: &ConvexPolyhedron) -> Feature {
+    pub(crate) fn with_input_numbers(self, body: &ConvexPolyhedron) -> Feature {
         let input = |v: u32| body.input_indices()[v as usize];
         match self {
             Self::Vertex(v) => Feature::Vertex(input(v)),
@@ -72,7 +72,7 @@ impl OwnFeature {
 /// - `vertex`: a support point along `outward`.
 /// - `noise`: the distance up to which a vertex counts as in the plane, in addition to the hull error.
 #[inline]
-pub(crate) fn feature(
+pub(crate) fn feature_in_plane(
     body: &ConvexPolyhedron,
     outward: DVec3,
     vertex: u32,
@@ -99,7 +99,7 @@ pub(crate) fn feature(
     if in_plane_mask == 0 {
         return OwnFeature::Vertex(vertex);
     }
-    let outgoing = topology.outgoing(vertex);
+    let outgoing = topology.outgoing_half_edges(vertex);
     let is_closed = count == neighbours.len() && count > 1;
     let paired = in_plane_mask
         & ((in_plane_mask >> 1) | ((u32::from(is_closed) * (in_plane_mask & 1)) << (count - 1)));

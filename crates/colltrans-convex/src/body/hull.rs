@@ -5,9 +5,9 @@ use glam::DVec3;
 use super::ConvexPolyhedron;
 
 /// Vertices whose convex hull is, or contains, a body or a part of one.
-pub trait Hull {
+pub trait VertexHull {
     /// Returns the vertices, in the body frame; at least one.
-    fn corners(&self) -> &[DVec3];
+    fn hull_vertices(&self) -> &[DVec3];
 
     /// Returns an upper bound of the distances of the vertices from the origin of the body frame.
     fn reach(&self) -> f64;
@@ -19,9 +19,9 @@ pub trait Hull {
     }
 }
 
-impl Hull for ConvexPolyhedron {
+impl VertexHull for ConvexPolyhedron {
     #[inline]
-    fn corners(&self) -> &[DVec3] {
+    fn hull_vertices(&self) -> &[DVec3] {
         self.vertices()
     }
 

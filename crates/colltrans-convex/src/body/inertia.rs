@@ -1,9 +1,12 @@
 //! Size, volume and inertia ellipsoid of a body.
 //!
 //! The *inertia ellipsoid* is `{c + x : x^T S^-1 x <= 1}`. Its centre `c` is the body's centroid, and `S = 5 cov`
-//! with the covariance `cov` of the body's volume. The inertia ellipsoid of a solid ellipsoid is this ellipsoid
-//! itself. It only provides guesses: for the first normal of a query, and for directions over which the body's
-//! normals spread evenly.
+//! with the covariance `cov` of the body's volume. For a body without volume, `c` and `cov` are those of its
+//! vertices. A small multiple of the identity is added to `cov`, so that `S` is positive definite. Except for this
+//! term, the inertia ellipsoid of a solid ellipsoid is this ellipsoid itself.
+//!
+//! It provides guesses of the first normal of a query, the directions of the support table, over which the body's
+//! normals spread evenly, and the coordinates in which offset bodies are computed.
 
 use glam::{DMat3, DVec3};
 
@@ -22,9 +25,9 @@ pub struct Inertia {
     /// Square root of the trace of `S`, the mean size of the ellipsoid.
     pub(crate) radius: f64,
     /// Whether the semi-axes of the ellipsoid are nearly equal.
-    pub(crate) round: bool,
+    pub(crate) is_round: bool,
     /// Radius of a ball around the centre that the body certainly contains; 0 if the body has no volume.
-    pub(crate) inner: f64,
+    pub(crate) inner_radius: f64,
     /// Volume; 0 for a body of lower dimension.
     pub(crate) volume: f64,
 }
@@ -59,7 +62,7 @@ impl Inertia {
         let round = geometric * geometric
             > (MIN_ROUNDNESS / 3.0) * (MIN_ROUNDNESS / 3.0) * (MIN_ROUNDNESS / 3.0);
         let inner = if volume > 0.0 { inner_radius(vertices, topology, center) } else { 0.0 };
-        Self { reach, center, factor, radius, round, inner, volume }
+        Self { reach, center, factor, radius, is_round: round, inner_radius: inner, volume }
     }
 
     /// Returns the signed volume that a closed surface encloses. It is positive if the faces are counter-clockwise
@@ -174,11 +177,12 @@ mod tests {
     fn box_moments_match_closed_form() {
         let Mesh { vertices, faces } = block(DVec3::ZERO, DVec3::new(2.0, 4.0, 6.0));
         let topology =
-            Topology::sphere(8, (0..=6).map(|f| 4 * f).collect(), faces.concat()).unwrap();
+            Topology::from_sphere_faces(8, (0..=6).map(|f| 4 * f).collect(), faces.concat())
+                .unwrap();
         let m = Inertia::new(&vertices, &topology, 3);
         assert!((m.volume - 48.0).abs() < 1e-12);
         assert!((m.center - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-12);
-        assert!(m.inner < 1.0 && m.inner > 0.9999);
+        assert!(m.inner_radius < 1.0 && m.inner_radius > 0.9999);
         let expected = DVec3::new(1.0, 4.0, 9.0) / 3.0 * 5.0;
         for i in 0..3 {
             let s = m.factor * m.factor.transpose();

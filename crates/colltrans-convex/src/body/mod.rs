@@ -9,14 +9,14 @@ mod moving;
 pub(crate) mod placed;
 
 #[doc(hidden)]
-pub use colltrans_kernel::kept::{DerivedData, Kept};
+pub use colltrans_kernel::derived::{DerivedData, DerivedDataSlot};
 pub use colltrans_kernel::topology::HalfEdge;
 pub use colltrans_kernel::{Aabb, FaceId, InputFacet, InputVertex, ObstacleId, Pose, VertexId};
 pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defect};
-pub(crate) use convex::{FAN, LargeFace, MAX_RIMS, Rim, cyclic_maximum};
-pub(crate) use feature::feature;
+pub(crate) use convex::{LargeFace, MAX_RIMS, MAX_SCANNED_NEIGHBOURS, Rim, cyclic_maximum};
+pub(crate) use feature::feature_in_plane;
 pub use feature::{Feature, Features};
-pub use hull::Hull;
+pub use hull::VertexHull;
 pub(crate) use inertia::Inertia;
 pub use moving::Moving;
-pub use placed::{Body, Numbered, Placed, Told};
+pub use placed::{AnswerPart, Body, InputNumbered, Placed};

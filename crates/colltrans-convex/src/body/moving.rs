@@ -26,6 +26,6 @@ impl ConvexPolyhedron {
 
 impl<'a, B> From<Placed<'a, B>> for Moving<'a, B> {
     fn from(placed: Placed<'a, B>) -> Self {
-        Self { body: placed.body, motion: Cow::Owned(Motion::still(placed.pose)) }
+        Self { body: placed.body, motion: Cow::Owned(Motion::at_rest(placed.pose)) }
     }
 }

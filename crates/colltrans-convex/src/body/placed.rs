@@ -8,27 +8,27 @@ use crate::answer::RangeEnd;
 
 /// A kind of body that queries accept, with the types of their options and answers: a [`ConvexPolyhedron`] or a
 /// `Solid`.
-pub trait Body: Numbered + Clone + Debug {
+pub trait Body: InputNumbered + Clone + Debug {
     /// Options of a query about two such bodies.
     type Options: Copy + Default + Debug;
     /// Answer for bodies that come into contact.
-    type Contact: Told + RangeEnd;
+    type Contact: AnswerPart + RangeEnd;
     /// Answer for bodies that slide along each other, where a query distinguishes this case.
-    type Grazing: Told + RangeEnd;
+    type Grazing: AnswerPart + RangeEnd;
     /// Answer for bodies that never come into contact.
-    type Separated: Told;
+    type Separated: AnswerPart;
     /// Answer for a motion that nothing stops.
-    type Free: Told;
+    type Free: AnswerPart;
     /// Answer for bodies that overlap.
-    type Overlap: Told;
+    type Overlap: AnswerPart;
     /// Evidence for or against an intersection of the bodies in their poses.
-    type Evidence: Told;
+    type Evidence: AnswerPart;
     /// Proof of an upper bound of the distance of two bodies.
-    type Near: Told;
+    type Near: AnswerPart;
     /// Proof of a lower bound of the distance of two bodies.
-    type Gap: Told;
+    type Gap: AnswerPart;
     /// Amount of work that an answer took.
-    type Steps: Told + Default;
+    type Steps: AnswerPart + Default;
 }
 
 impl Feature {
@@ -42,8 +42,8 @@ impl Feature {
             Self::Vertex(v) => vec![v],
             Self::Edge(ends) => ends.to_vec(),
             Self::Face(_) => {
-                let own = self.own_vertices(body);
-                own.into_iter().map(|v| body.inputs()[v.index()]).collect()
+                let own = self.vertex_positions(body);
+                own.into_iter().map(|v| body.vertex_inputs()[v.index()]).collect()
             }
         }
     }
@@ -53,7 +53,7 @@ impl Feature {
     ///
     /// # Panics
     /// If `body` does not have the feature.
-    pub fn own_vertices<B: Body>(self, body: &B) -> Vec<VertexId> {
+    pub fn vertex_positions<B: Body>(self, body: &B) -> Vec<VertexId> {
         feature_vertices(body, self)
     }
 }
@@ -64,30 +64,35 @@ impl Feature {
 pub trait Told: Copy + Debug + PartialEq {}
 
 #[cfg(not(feature = "serde"))]
-impl<T: Copy + Debug + PartialEq> Told for T {}
+impl<T: Copy + Debug + PartialEq> AnswerPart for T {}
 
 /// Type of a part of an answer, which can be serialised.
 #[cfg(feature = "serde")]
 #[doc(hidden)]
-pub trait Told: Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned {}
+pub trait AnswerPart:
+    Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned
+{
+}
 
 #[cfg(feature = "serde")]
-impl<T> Told for T where T: Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned
-{}
+impl<T> AnswerPart for T where
+    T: Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned
+{
+}
 
 /// A body that maps its vertices and faces to input numbers.
 #[doc(hidden)]
-pub trait Numbered {
+pub trait InputNumbered {
     /// Returns the input number of each vertex of the body.
-    fn inputs(&self) -> &[InputVertex];
+    fn vertex_inputs(&self) -> &[InputVertex];
     /// Returns the corners of a face as positions among the body's vertices.
     fn face_corner_positions(&self, face: u32) -> Vec<u32>;
 }
 
 /// Returns the vertices of a feature as positions among the body's vertices.
-fn feature_vertices<B: Numbered>(body: &B, feature: Feature) -> Vec<VertexId> {
+fn feature_vertices<B: InputNumbered>(body: &B, feature: Feature) -> Vec<VertexId> {
     let position = |v: InputVertex| {
-        let found = body.inputs().iter().position(|input| *input == v);
+        let found = body.vertex_inputs().iter().position(|input| *input == v);
         VertexId(found.expect("the feature belongs to this body") as u32)
     };
     match feature {
@@ -99,8 +104,8 @@ fn feature_vertices<B: Numbered>(body: &B, feature: Feature) -> Vec<VertexId> {
     }
 }
 
-impl Numbered for ConvexPolyhedron {
-    fn inputs(&self) -> &[InputVertex] {
+impl InputNumbered for ConvexPolyhedron {
+    fn vertex_inputs(&self) -> &[InputVertex] {
         self.input_indices()
     }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::Cast;
 use crate::answer::Contact;
-use crate::body::{Features, Pose, feature};
+use crate::body::{Features, Pose, feature_in_plane};
 use colltrans_kernel::error::PoseError;
 use colltrans_kernel::noise::Noise;
 
@@ -30,10 +30,10 @@ impl Contact {
     ///
     /// # Panics
     /// If `cast` is about other bodies, which lack the vertices of the certificate.
-    pub fn points(&self, cast: &Cast) -> WitnessPoints {
+    pub fn witness_points(&self, cast: &Cast) -> WitnessPoints {
         let setting = &cast.setting;
         let certificate = &self.certificate;
-        let [p, q] = setting.weighted(&certificate.pairs, &certificate.weights);
+        let [p, q] = setting.weighted_points(&certificate.pairs, &certificate.weights);
         let origin = setting.translations[0];
         WitnessPoints {
             on_moving: setting.moving_matrix * p + origin,
@@ -50,12 +50,14 @@ impl Contact {
     /// If `cast` is about other bodies, which lack the vertices of the certificate.
     pub fn features(&self, cast: &Cast) -> Features {
         let setting = &cast.setting;
-        let noise = Noise::of(setting.scale() + cast.options.keep).point();
+        let noise = Noise::for_size(setting.size() + cast.options.min_gap).point_error();
         let outward = [setting.moving_normal(self.normal), -setting.fixed_normal(self.normal)];
-        let [p, q] = self.support.numbers();
+        let [p, q] = self.support.indices();
         Features {
-            moving: feature(setting.moving, outward[0], p, noise).named(setting.moving),
-            fixed: feature(setting.fixed, outward[1], q, noise).named(setting.fixed),
+            moving: feature_in_plane(setting.moving, outward[0], p, noise)
+                .with_input_numbers(setting.moving),
+            fixed: feature_in_plane(setting.fixed, outward[1], q, noise)
+                .with_input_numbers(setting.fixed),
         }
     }
 
@@ -96,7 +98,7 @@ impl Contact {
             let rounding = 8.0 * f64::EPSILON * (n.abs().dot(moved.abs()) + along * t);
             let beyond = n.dot(moved) + rounding - along * self.certificate.lower;
             if beyond <= 0.0 {
-                return start.moved_to(to);
+                return start.with_translation(to);
             }
             t -= (2.0 * beyond / along).max(t * f64::EPSILON);
         }

@@ -6,11 +6,11 @@
 //! - `sideways` measures overlaps of shadows.
 //! - `replay` saves a query as a file (feature `json`).
 
+#[cfg(feature = "json")]
+pub mod case_file;
 mod contact;
 mod multi_cast;
-#[cfg(feature = "json")]
-pub mod replay;
-pub mod sideways;
+pub mod shadow_overlap;
 
 use derive_where::derive_where;
 use std::fmt;
@@ -26,14 +26,15 @@ use crate::setting::Setting;
 use crate::setting::error::QueryError;
 use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Options};
-use crate::solve::{TrackerUpdate, WarmStart, keep, search};
+use crate::solve::{TrackerUpdate, WarmStart, min_gap, search};
+#[cfg(feature = "json")]
+pub use case_file::{Case, CaseError};
 pub use contact::WitnessPoints;
 pub use multi_cast::{
-    clearance_of, common_translation, contact_range_by_casts, depth_of, intersection_by_casts,
+    clearance_by_casts, common_translation, contact_range_by_casts, directional_depth_by_casts,
+    intersection_by_casts,
 };
-#[cfg(feature = "json")]
-pub use replay::{Case, CaseError};
-pub use sideways::verified_overlap;
+pub use shadow_overlap::verified_overlap;
 
 /// A kind of body for which a [`Cast`] can be answered.
 ///
@@ -48,7 +49,7 @@ pub trait CastBody: Body {
     fn check_options(cast: &Cast<'_, Self>) -> Result<(), QueryError>;
     /// Returns the options with a minimum gap.
     #[doc(hidden)]
-    fn keeping(options: Self::Options, gap: f64) -> Self::Options;
+    fn with_min_gap(options: Self::Options, gap: f64) -> Self::Options;
     #[doc(hidden)]
     fn first_contact(cast: &Cast<'_, Self>) -> Result<Outcome<Self>, QueryError>;
     #[doc(hidden)]
@@ -72,7 +73,7 @@ pub trait CastBody: Body {
 ///
 /// ```
 /// use colltrans::glam::DVec3;
-/// use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, WhyFree};
+/// use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, FreeReason};
 ///
 /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
 /// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
@@ -90,7 +91,7 @@ pub trait CastBody: Body {
 /// assert!(gap <= contact.certificate.rounding);
 ///
 /// assert!(cast.contact_range()?.interval() == Some([2.0, 4.0]));
-/// assert!(matches!(cast.reversed().clearance()?, Clearance::Free(WhyFree::Behind(_))));
+/// assert!(matches!(cast.reversed().clearance()?, Clearance::Free(FreeReason::Behind(_))));
 /// assert!(!cast.intersects()?.meets);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -134,7 +135,7 @@ impl<'a, B: Body> Cast<'a, B> {
     /// # Errors
     /// Returns [`QueryError::Direction`] if the direction is zero, not finite or out of range.
     pub fn along(&self, direction: DVec3) -> Result<Self, QueryError> {
-        Ok(Self { setting: Setting::of(self.setting.bodies, direction)?, ..*self })
+        Ok(Self { setting: Setting::from_bodies(self.setting.bodies, direction)?, ..*self })
     }
 
     /// Returns the moving body.
@@ -215,12 +216,12 @@ impl<B: CastBody> Cast<'_, B> {
     /// eight noises counts as 0.
     ///
     /// # Errors
-    /// Returns [`QueryError::Keep`] if the gap is negative, not finite or larger than
+    /// Returns [`QueryError::MinGap`] if the gap is negative, not finite or larger than
     /// [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE).
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
-    /// # use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, WhyFree};
+    /// # use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, FreeReason};
     /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
     /// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
     /// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?.keeping(0.25)?;
@@ -235,12 +236,12 @@ impl<B: CastBody> Cast<'_, B> {
     /// let aside = Cast::new(cube.at(aside), cube.at(Pose::IDENTITY), DVec3::X)?;
     /// let near = aside.keeping(0.6)?.clearance()?.distance().expect("they are apart");
     /// assert!((near - (2.0 - 0.11_f64.sqrt())).abs() < 1e-13);
-    /// assert!(matches!(aside.keeping(0.4)?.clearance()?, Clearance::Free(WhyFree::Separated(_))));
+    /// assert!(matches!(aside.keeping(0.4)?.clearance()?, Clearance::Free(FreeReason::Separated(_))));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[inline]
-    pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
-        self.with_options(B::keeping(self.options, gap))
+    pub fn with_min_gap(self, gap: f64) -> Result<Self, QueryError> {
+        self.with_options(B::with_min_gap(self.options, gap))
     }
 
     /// Finds the first translation at which the bodies meet, if any.
@@ -293,13 +294,13 @@ impl<B: CastBody> Cast<'_, B> {
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
-    /// # use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, WhyFree};
+    /// # use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, FreeReason};
     /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
     /// // One cube on top of another: it can move up and sideways, but not down.
     /// let (above, world) = (Pose::from_translation(DVec3::Z)?, Pose::IDENTITY);
     /// let toward = |direction| Cast::new(cube.at(above), cube.at(world), direction)?.clearance();
-    /// assert!(matches!(toward(DVec3::Z)?, Clearance::Free(WhyFree::Behind(_))));
-    /// assert!(matches!(toward(DVec3::X)?, Clearance::Free(WhyFree::Slides(_))));
+    /// assert!(matches!(toward(DVec3::Z)?, Clearance::Free(FreeReason::Behind(_))));
+    /// assert!(matches!(toward(DVec3::X)?, Clearance::Free(FreeReason::Slides(_))));
     /// assert_eq!(toward(DVec3::NEG_Z)?.distance(), Some(0.0));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -311,9 +312,8 @@ impl<B: CastBody> Cast<'_, B> {
     /// Checks whether the bodies, as closed sets, have a common point in their current poses.
     ///
     /// The answer is exact for solids, and holds to within rounding error for convex bodies. It does not
-    /// depend on the direction or a tolerance. A convex body is cast along the line through both centres,
-    /// which passes the deepest part of the Minkowski difference. The answer is therefore as well conditioned
-    /// as the question.
+    /// depend on the direction or a tolerance. Convex bodies are cast along the line through both centres,
+    /// which passes through the centre of the Minkowski difference.
     ///
     /// # Errors
     /// Returns [`QueryError::NotConverged`] if a search of convex bodies ends without an answer.
@@ -441,8 +441,10 @@ impl Cast<'_> {
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
         let Self { setting, options } = self;
-        if cfg!(feature = "keep") && options.keep != 0.0 {
-            return keep::convex::cast_with_min_gap(setting, options, focus, last, next, observer);
+        if cfg!(feature = "min-gap") && options.min_gap != 0.0 {
+            return min_gap::convex::cast_with_min_gap(
+                setting, options, focus, last, next, observer,
+            );
         }
         search(setting, options, focus, last, next, observer)
     }
@@ -466,7 +468,7 @@ impl Cast<'_> {
         &self,
         observer: &mut O,
     ) -> Result<Clearance, QueryError> {
-        clearance_of(self, |cast| cast.first_contact_observed(observer))
+        clearance_by_casts(self, |cast| cast.first_contact_observed(observer))
     }
 
     /// Computes how far the moving body must move back, against the direction, until it no longer overlaps
@@ -486,7 +488,7 @@ impl Cast<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn directional_depth(&self) -> Result<DirectionalDepth, QueryError> {
-        depth_of(self, Self::first_contact)
+        directional_depth_by_casts(self, Self::first_contact)
     }
 }
 
@@ -496,12 +498,12 @@ impl CastBody for ConvexPolyhedron {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     fn check_options(cast: &Cast<'_>) -> Result<(), QueryError> {
-        cast.options.check()
+        cast.options.check_lengths()
     }
 
     #[inline]
-    fn keeping(options: Options, gap: f64) -> Options {
-        options.with_keep(gap)
+    fn with_min_gap(options: Options, gap: f64) -> Options {
+        options.with_min_gap(gap)
     }
 
     fn first_contact(cast: &Cast<'_>) -> Result<Outcome, QueryError> {
@@ -513,7 +515,7 @@ impl CastBody for ConvexPolyhedron {
     }
 
     fn clearance(cast: &Cast<'_>) -> Result<Clearance, QueryError> {
-        clearance_of(cast, Cast::first_contact)
+        clearance_by_casts(cast, Cast::first_contact)
     }
 
     fn intersects(cast: &Cast<'_>) -> Result<Intersection, QueryError> {
@@ -523,10 +525,10 @@ impl CastBody for ConvexPolyhedron {
     fn verify_cast(cast: &Cast<'_>, proof: Proof<'_>) -> Result<f64, CertificateError> {
         match proof {
             Proof::Contact(certificate) => {
-                certificate.verify_with_gap(&cast.setting, cast.options.keep)
+                certificate.verify_with_gap(&cast.setting, cast.options.min_gap)
             }
             Proof::Separation(separation) => {
-                separation.verify_with_gap(&cast.setting, cast.options.keep)
+                separation.verify_with_gap(&cast.setting, cast.options.min_gap)
             }
         }
     }

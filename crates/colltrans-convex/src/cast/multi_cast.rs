@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::Cast;
 use crate::answer::{
-    Bounded, CentralCast, Clearance, Contact, ContactRange, DirectionalDepth, Grazing,
-    Intersection, Outcome, OverlapAhead, WhyFree,
+    Bounded, CentralCast, Clearance, Contact, ContactRange, DirectionalDepth, FreeReason, Grazing,
+    Intersection, Outcome, OverlapAhead,
 };
 use crate::setting::error::QueryError;
 use colltrans_kernel::range::MIN_MAGNITUDE;
@@ -67,14 +67,16 @@ fn order_range_ends(first: &mut Contact, last: &mut Contact) {
 /// # Errors
 /// Returns the errors of `run`.
 #[inline]
-pub fn clearance_of<'a>(
+pub fn clearance_by_casts<'a>(
     cast: &Cast<'a>,
     mut run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
 ) -> Result<Clearance, QueryError> {
     let contact = match run(cast)? {
         Outcome::Contact(contact) => contact,
-        Outcome::Grazing(grazing) => return Ok(Clearance::Free(WhyFree::Slides(grazing))),
-        Outcome::Separated(separated) => return Ok(Clearance::Free(WhyFree::Separated(separated))),
+        Outcome::Grazing(grazing) => return Ok(Clearance::Free(FreeReason::Slides(grazing))),
+        Outcome::Separated(separated) => {
+            return Ok(Clearance::Free(FreeReason::Separated(separated)));
+        }
     };
     if let Some(blocked) = Clearance::blocked_by(&contact) {
         return Ok(blocked);
@@ -83,8 +85,8 @@ pub fn clearance_of<'a>(
         Outcome::Contact(last) => Clearance::beyond_first(contact, last),
         // The shadows do not depend on the sign of the direction; only the last bits of their overlap may
         // differ.
-        Outcome::Grazing(grazing) => Clearance::Free(WhyFree::Slides(grazing)),
-        Outcome::Separated(separated) => Clearance::Free(WhyFree::Separated(separated)),
+        Outcome::Grazing(grazing) => Clearance::Free(FreeReason::Slides(grazing)),
+        Outcome::Separated(separated) => Clearance::Free(FreeReason::Separated(separated)),
     })
 }
 
@@ -93,13 +95,13 @@ pub fn clearance_of<'a>(
 /// # Errors
 /// Returns the errors of `run`.
 #[inline]
-pub fn depth_of<'a>(
+pub fn directional_depth_by_casts<'a>(
     cast: &Cast<'a>,
     run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
 ) -> Result<DirectionalDepth, QueryError> {
-    let clearance = clearance_of(cast, run)?;
+    let clearance = clearance_by_casts(cast, run)?;
     let depth = match &clearance {
-        // Safe is a value that is not less than the true depth.
+        // The lower bound of the first contact gives a value that is not less than the true depth.
         Clearance::Overlapping(OverlapAhead { first, .. }) => -first.certificate.lower,
         _ => 0.0,
     };

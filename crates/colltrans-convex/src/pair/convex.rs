@@ -6,7 +6,7 @@ use super::{PairProof, verify};
 use crate::answer::{
     CertificateError, Depth, Distance, Enclosure, NearPoints, StartedFrom, Steps, Within,
 };
-use crate::body::{ConvexPolyhedron, Features, feature};
+use crate::body::{ConvexPolyhedron, Features, feature_in_plane};
 use crate::pair::{Pair, PairBody};
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::{TwoBodies, VertexPair, check_length};
@@ -55,14 +55,14 @@ impl Pair<'_> {
         let difference = Difference::new(&self.bodies);
         let mut found = nearest_points(&difference, &difference.depth_start(), None);
         found.supports += 1;
-        if let Some(plane) = found.plane(&difference).filter(|plane| plane.gap.gap > 0.0) {
+        if let Some(plane) = found.gap_plane(&difference).filter(|plane| plane.gap.gap > 0.0) {
             let (direction, enclosure) = (-plane.gap.normal, Enclosure::default());
             let steps = found.steps();
             return Ok(Depth { lower: 0.0, upper: 0.0, direction, enclosure, steps });
         }
         let best = penetration_depth(&difference, &found, enough);
         let (lower, upper) = (best.lower, best.upper);
-        let tolerance = MAX_BOUND_GAP * difference.noise.point() + best.excess;
+        let tolerance = MAX_BOUND_GAP * difference.noise.point_error() + best.excess;
         if lower <= enough && upper - lower > tolerance {
             let reason = Stalled::Distance { lower, upper, tolerance };
             return Err(QueryError::NotConverged { reason });
@@ -87,7 +87,7 @@ impl PairBody for ConvexPolyhedron {
         let mut decided = decide_within(&difference, &found, length);
         if decided.is_none() {
             let before = found.supports;
-            found = nearest_points(&difference, &found.pairs(), None);
+            found = nearest_points(&difference, &found.start_pairs(), None);
             found.supports += before;
             decided = decide_within(&difference, &found, length);
         }
@@ -117,7 +117,7 @@ fn decide_within(difference: &Difference, found: &DescentResult, length: f64) ->
     (plane.gap.gap > length).then_some(Within::Farther(plane.gap))
 }
 
-/// Computes the distance by a search that starts from `pairs`, and stores the pairs that it ends with there.
+/// Computes the distance by a search that starts from `pairs`. Replaces `pairs` by the pairs of the nearest points.
 ///
 /// # Errors
 /// Returns [`QueryError::NotConverged`] if the bounds differ by more than rounding explains.
@@ -126,7 +126,7 @@ pub fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, 
     let difference = Difference::new(&pair.bodies);
     let found = nearest_points(&difference, pairs, None);
     let is_new = pairs.is_empty();
-    *pairs = found.pairs();
+    *pairs = found.start_pairs();
     let mut distance = distance_of_search(&difference, &found)?;
     if !is_new {
         distance.steps.started_from = StartedFrom::Features;
@@ -147,19 +147,20 @@ fn distance_of_search(
     let beyond = plane.map_or(0.0, |plane| plane.excess);
     let plane = plane.filter(|plane| plane.gap.gap > 0.0);
     let lower = plane.map_or(0.0, |plane| plane.gap.gap);
-    let tolerance = MAX_BOUND_GAP * difference.noise.point() + beyond;
+    let tolerance = MAX_BOUND_GAP * difference.noise.point_error() + beyond;
     if near.distance - lower > tolerance {
         let reason = Stalled::Distance { lower, upper: near.distance, tolerance };
         return Err(QueryError::NotConverged { reason });
     }
-    let [on_moving, on_fixed] = points(bodies, &near);
+    let [on_moving, on_fixed] = nearest_points_in_world(bodies, &near);
     Ok(Distance {
         lower,
         upper: near.distance,
         on_moving,
         on_fixed,
         normal: plane.map(|plane| plane.gap.normal),
-        features: plane.map(|plane| facing_features(bodies, &plane, difference.noise.point())),
+        features: plane
+            .map(|plane| facing_features(bodies, &plane, difference.noise.point_error())),
         near,
         gap: plane.map(|plane| plane.gap),
         steps: found.steps(),
@@ -168,8 +169,8 @@ fn distance_of_search(
 
 /// Returns the nearest points of the moving and of the fixed body, in the world, rounded.
 #[inline]
-pub fn points(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
-    let [p, q] = bodies.weighted(&near.pairs, &near.weights);
+pub fn nearest_points_in_world(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
+    let [p, q] = bodies.weighted_points(&near.pairs, &near.weights);
     let origin = bodies.translations[0];
     [bodies.moving_matrix * p + origin, bodies.fixed_matrix * q + bodies.offset + origin]
 }
@@ -181,7 +182,9 @@ fn facing_features(bodies: &TwoBodies, plane: &GapPlane, noise: f64) -> Features
     let VertexPair { moving, fixed } = plane.lowest;
     let [out, back] = [bodies.moving_normal(normal), -bodies.fixed_normal(normal)];
     Features {
-        moving: feature(bodies.moving, out, moving.0, noise).named(bodies.moving),
-        fixed: feature(bodies.fixed, back, fixed.0, noise).named(bodies.fixed),
+        moving: feature_in_plane(bodies.moving, out, moving.0, noise)
+            .with_input_numbers(bodies.moving),
+        fixed: feature_in_plane(bodies.fixed, back, fixed.0, noise)
+            .with_input_numbers(bodies.fixed),
     }
 }

@@ -3,12 +3,14 @@
 mod convex;
 mod verify;
 
-use crate::answer::{CertificateError, Depth, Distance, NearPoints, PlaneGap, Within, checked_as};
+use crate::answer::{
+    CertificateError, Depth, Distance, NearPoints, PlaneGap, Within, impl_from_proofs,
+};
 use crate::body::{Body, ConvexPolyhedron, Features, Placed, Pose};
 use crate::setting::TwoBodies;
 use crate::setting::error::QueryError;
 pub use convex::distance_from;
-pub use convex::points;
+pub use convex::nearest_points_in_world;
 use derive_where::derive_where;
 
 /// A kind of body for which a [`Pair`] can be answered. It is not meant to be implemented outside this
@@ -55,7 +57,7 @@ pub enum PairProof<'a> {
     Depth(&'a Depth),
 }
 
-checked_as!(PairProof { Gap(PlaneGap), Near(NearPoints), Depth(Depth) });
+impl_from_proofs!(PairProof { Gap(PlaneGap), Near(NearPoints), Depth(Depth) });
 
 impl<'a, B: Body> Pair<'a, B> {
     /// Builds a pair of two placed bodies.

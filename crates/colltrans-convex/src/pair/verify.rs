@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::answer::{CertificateError, Depth, Enclosure, NearPoints, PlaneGap, are_weights};
 use crate::setting::{TwoBodies, VertexPair};
 use crate::solve::nearest::surrounds_origin;
-use colltrans_kernel::{extent, noise, volume};
+use colltrans_kernel::{height_bounds, noise, volume};
 
 /// Returns the gap that a plane proves. Returns an error if the claimed gap is negative or larger.
 pub(super) fn verify_plane(bodies: &TwoBodies, plane: &PlaneGap) -> Result<f64, CertificateError> {
@@ -29,14 +29,14 @@ pub(super) fn verify_points(
     check_vertices_exist(bodies, pairs)?;
     let terms = pairs.map(|pair| bodies.terms(pair));
     if *distance == 0.0 {
-        let met = volume::encloses(&terms, bodies.scale());
-        return if met { Ok(0.0) } else { Err(CertificateError::Start) };
+        let met = volume::contains_origin(&terms, bodies.size());
+        return if met { Ok(0.0) } else { Err(CertificateError::StartClaim) };
     }
     if !are_weights(weights) {
         return Err(CertificateError::PointWeights { weights: *weights });
     }
     let sum: f64 = weights.iter().sum();
-    let mean: DVec3 = terms.iter().zip(weights).map(|(m, w)| m.point() * (w / sum)).sum();
+    let mean: DVec3 = terms.iter().zip(weights).map(|(m, w)| m.rounded_point() * (w / sum)).sum();
     let proven = (mean.length() + bodies.noise().checked_mean_length_margin()).next_up();
     if *distance >= proven {
         Ok(proven)
@@ -50,7 +50,7 @@ pub(super) fn verify_points(
 /// Returns an error if more is claimed, or if the direction does not prove the upper bound.
 pub(super) fn verify_depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, CertificateError> {
     check_unit_normal(depth.direction)?;
-    let [square, _] = extent::dot(depth.direction, depth.direction);
+    let [square, _] = height_bounds::dot_bounds(depth.direction, depth.direction);
     let reach = -bodies.distance_along(-depth.direction);
     let upper = (reach / square.sqrt().next_down()).next_up().max(0.0);
     if depth.upper.is_nan() || depth.upper < upper {
@@ -73,14 +73,14 @@ fn enclosed_radius(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, Certi
     check_vertices_exist(bodies, pairs)?;
     let fits = |corners: &[u32; 3]| corners.iter().all(|k| (*k as usize) < pairs.len());
     if normals.len() != triangles.len() || !triangles.iter().all(fits) {
-        return Err(CertificateError::Start);
+        return Err(CertificateError::StartClaim);
     }
-    let points: Vec<DVec3> = pairs.iter().map(|pair| bodies.terms(*pair).point()).collect();
+    let points: Vec<DVec3> = pairs.iter().map(|pair| bodies.terms(*pair).rounded_point()).collect();
     let mut least = f64::INFINITY;
     for (corners, normal) in triangles.iter().zip(normals) {
         check_unit_normal(*normal)?;
         // The length of the normal may exceed 1 by rounding.
-        let [_, square] = extent::dot(*normal, *normal);
+        let [_, square] = height_bounds::dot_bounds(*normal, *normal);
         let length = square.sqrt().next_up();
         for corner in corners {
             let height =
@@ -92,7 +92,7 @@ fn enclosed_radius(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, Certi
     if proven > 0.0 && surrounds_origin(bodies, surface) {
         Ok(proven)
     } else {
-        Err(CertificateError::Start)
+        Err(CertificateError::StartClaim)
     }
 }
 

@@ -26,12 +26,12 @@ pub enum QueryError {
         tolerance: f64,
     },
     /// The minimum gap is negative, not finite or larger than 2^200, or is not 0 and the library was built
-    /// without its feature `keep`.
+    /// without its feature `min_gap`.
     #[error(
         "the minimum gap {gap} is negative, not finite or larger than 2^200{}",
-        if cfg!(feature = "keep") { "" } else { "; this build accepts only 0" }
+        if cfg!(feature = "min-gap") { "" } else { "; this build accepts only 0" }
     )]
-    Keep {
+    MinGap {
         /// The gap, as given.
         gap: f64,
     },
@@ -67,7 +67,7 @@ pub enum QueryError {
     },
     /// A convex body cannot be converted to a solid.
     #[error("the convex body cannot be converted to a solid: {reason}")]
-    NoSolid {
+    NotASolid {
         /// Message of the failed conversion.
         reason: String,
     },
@@ -98,7 +98,7 @@ pub enum QueryError {
         "the motion goes too far: the error of computed positions, up to {off:e}, exceeds the size of the bodies, \
          {size:e}; use a shorter motion, or poses closer to the origin"
     )]
-    Coarse {
+    PositionError {
         /// Bound on the error of a position, in world units.
         off: f64,
         /// Sum of the bodies' largest distances from their origins.

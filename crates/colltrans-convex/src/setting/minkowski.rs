@@ -16,33 +16,33 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::setting::{Setting, VertexPair};
 use colltrans_kernel::noise::{self, Noise};
-use colltrans_kernel::orientation::{self, Shadow, Terms};
+use colltrans_kernel::orientation::{self, PointTerms, Shadow};
 use colltrans_kernel::predicates::orient2d;
 use colltrans_kernel::symmetric::Symmetric;
 
 /// A point of `M` in the shadow frame, and the pair of vertices that defines it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Point {
+pub(crate) struct ShadowPoint {
     /// Coordinates in the shadow frame, displaced to a corner of the widening rectangle if `M` is widened.
-    pub(crate) at: DVec3,
+    pub(crate) coordinates: DVec3,
     /// The pair of vertices whose difference is the point.
     pub(crate) pair: VertexPair,
 }
 
-impl Point {
+impl ShadowPoint {
     /// Returns the lateral coordinates.
     pub(crate) fn shadow(&self) -> DVec2 {
-        self.at.truncate()
+        self.coordinates.truncate()
     }
 
     /// Returns the coordinate along `d`, in world units.
     pub(crate) fn height(&self) -> f64 {
-        self.at.z
+        self.coordinates.z
     }
 }
 
-/// Minimum cosine of the angle between a normal as carried by either body, for which an earlier query is
-/// still used (measured).
+/// A normal of an earlier query is stored in the frames of both bodies. This is the minimum cosine of the angle
+/// between both copies, in the current poses, at which the earlier query is still used (measured).
 const MIN_COSINE_BETWEEN_QUERIES: f64 = 0.94;
 
 /// Maximum height of the line's entry into `M` above a nearby point that is taken as the upper bound, in
@@ -120,40 +120,42 @@ impl<'a> MinkowskiDifference<'a> {
     ///
     /// `margin` is the distance by which the line misses `M`. It is added to the widening if it is positive.
     pub(crate) fn widened_by(&self, margin: f64) -> Self {
-        Self { widening: self.noise.widening(margin), ..self.clone() }
+        Self { widening: self.noise.widening_half_side(margin), ..self.clone() }
     }
 
     /// Returns the lateral distance below which points are not distinguished.
     #[inline]
-    pub(crate) fn touching(&self) -> f64 {
-        self.noise.touching()
+    pub(crate) fn touching_distance(&self) -> f64 {
+        self.noise.touching_distance()
     }
 
     /// Returns the point of `M` that is lowest along `normal` (shadow frame, any length).
     #[inline]
-    pub(crate) fn support(&self, normal: DVec3) -> Point {
+    pub(crate) fn support_point(&self, normal: DVec3) -> ShadowPoint {
         let (p, q) = (self.setting.moving, self.setting.fixed);
-        let (in_moving, in_fixed) = (self.in_moving(normal), -self.in_fixed(normal));
+        let (in_moving, in_fixed) = (self.to_moving_frame(normal), -self.to_fixed_frame(normal));
         // Both table entries are loaded before either climb, so that their memory accesses overlap.
         let (near_p, near_q) = (p.support_guess(in_moving), q.support_guess(in_fixed));
         let moving = p.support_from_guess(in_moving, near_p);
         let fixed = q.support_from_guess(in_fixed, near_q);
-        self.point(VertexPair::of(moving, fixed), normal)
+        self.widened_point(VertexPair::from_indices(moving, fixed), normal)
     }
 
     /// Returns the point of `M` that is lowest along `normal` (shadow frame, any length), by hill climbing
     /// from the pair `near`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
-    pub(crate) fn support_point_from(&self, normal: DVec3, near: VertexPair) -> Point {
-        let moving = self.setting.moving.support_point_from(self.in_moving(normal), near.moving.0);
-        let fixed = self.setting.fixed.support_point_from(-self.in_fixed(normal), near.fixed.0);
-        self.point(VertexPair::of(moving, fixed), normal)
+    pub(crate) fn support_point_from(&self, normal: DVec3, near: VertexPair) -> ShadowPoint {
+        let moving =
+            self.setting.moving.support_point_from(self.to_moving_frame(normal), near.moving.0);
+        let fixed =
+            self.setting.fixed.support_point_from(-self.to_fixed_frame(normal), near.fixed.0);
+        self.widened_point(VertexPair::from_indices(moving, fixed), normal)
     }
 
     /// Transforms a normal from the shadow frame to the moving body's frame.
     #[inline]
-    pub(crate) fn in_moving(&self, normal: DVec3) -> DVec3 {
+    pub(crate) fn to_moving_frame(&self, normal: DVec3) -> DVec3 {
         self.moving_from_shadow * normal
     }
 
@@ -192,17 +194,17 @@ impl<'a> MinkowskiDifference<'a> {
 
     /// Transforms a normal from the shadow frame to the fixed body's frame.
     #[inline]
-    pub(crate) fn in_fixed(&self, normal: DVec3) -> DVec3 {
+    pub(crate) fn to_fixed_frame(&self, normal: DVec3) -> DVec3 {
         self.fixed_from_shadow * normal
     }
 
     /// Returns the point of `M` for a pair of vertices, without widening.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
-    pub(crate) fn vertex(&self, pair: VertexPair) -> Point {
+    pub(crate) fn vertex_point(&self, pair: VertexPair) -> ShadowPoint {
         let p = self.setting.moving.vertices()[pair.moving.index()];
         let q = self.setting.fixed.vertices()[pair.fixed.index()];
-        Point { at: self.difference(p, q), pair }
+        ShadowPoint { coordinates: self.difference(p, q), pair }
     }
 
     /// Computes `q - p` in the shadow frame. Each point is in its body's frame.
@@ -218,12 +220,12 @@ impl<'a> MinkowskiDifference<'a> {
     /// around it that is lowest along `normal`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
-    pub(crate) fn point(&self, pair: VertexPair, normal: DVec3) -> Point {
-        let mut point = self.vertex(pair);
+    pub(crate) fn widened_point(&self, pair: VertexPair, normal: DVec3) -> ShadowPoint {
+        let mut point = self.vertex_point(pair);
         if self.widening != 0.0 {
             let [along_x, along_y] = noise::WIDENING.map(|side| side * self.widening);
-            point.at.x -= along_x.copysign(normal.x);
-            point.at.y -= along_y.copysign(normal.y);
+            point.coordinates.x -= along_x.copysign(normal.x);
+            point.coordinates.y -= along_y.copysign(normal.y);
         }
         point
     }
@@ -231,16 +233,16 @@ impl<'a> MinkowskiDifference<'a> {
     /// Returns the difference of the bodies' centres, and the matrices of their inertia ellipsoids, in the
     /// shadow frame.
     #[inline]
-    pub(crate) fn ellipsoids(&self) -> (DVec3, [Symmetric; 2]) {
+    pub(crate) fn inertia_ellipsoids(&self) -> (DVec3, [Symmetric; 2]) {
         let (moving, fixed) = (self.setting.moving.inertia(), self.setting.fixed.inertia());
-        let a = Symmetric::gram(&moving.transposed_factor_product(&self.moving_from_shadow));
-        let b = Symmetric::gram(&fixed.transposed_factor_product(&self.fixed_from_shadow));
-        (self.center(), [a, b])
+        let a = Symmetric::gram_matrix(&moving.transposed_factor_product(&self.moving_from_shadow));
+        let b = Symmetric::gram_matrix(&fixed.transposed_factor_product(&self.fixed_from_shadow));
+        (self.center_difference(), [a, b])
     }
 
     /// Returns the difference of the bodies' centres, in the shadow frame.
     #[inline]
-    pub(crate) fn center(&self) -> DVec3 {
+    pub(crate) fn center_difference(&self) -> DVec3 {
         let (moving, fixed) = (self.setting.moving.inertia(), self.setting.fixed.inertia());
         self.difference(moving.center, fixed.center)
     }
@@ -249,8 +251,9 @@ impl<'a> MinkowskiDifference<'a> {
     /// `margin` of the line.
     #[inline]
     pub(crate) fn shadow_contains_disc(&self, margin: f64) -> bool {
-        let radius_left = self.inner_radius() - (margin + self.noise.point());
-        radius_left > 0.0 && self.center().truncate().length_squared() < radius_left * radius_left
+        let radius_left = self.inner_radius() - (margin + self.noise.point_error());
+        radius_left > 0.0
+            && self.center_difference().truncate().length_squared() < radius_left * radius_left
     }
 
     /// Checks whether an edge of `M` near the line and balls inside the bodies prove that the shadow of `M`
@@ -258,15 +261,19 @@ impl<'a> MinkowskiDifference<'a> {
     ///
     /// See `docs/theory/inner-balls.md`, section "Shadow around an edge".
     #[inline]
-    pub(crate) fn shadow_contains_disc_near_edge(&self, edge: [&Point; 2], margin: f64) -> bool {
-        let [from, to] = edge.map(Point::shadow);
-        let center = self.center().truncate();
+    pub(crate) fn shadow_contains_disc_near_edge(
+        &self,
+        edge: [&ShadowPoint; 2],
+        margin: f64,
+    ) -> bool {
+        let [from, to] = edge.map(ShadowPoint::shadow);
+        let center = self.center_difference().truncate();
         let length = (to - from).length();
         let radius = self.inner_radius();
         let disc_reach = self.disc_reach_beyond_edge([from, to], length, center);
         let along = -from.dot(to - from) / length;
         let apart = from.perp_dot(to).abs() / length;
-        let least = margin + apart + self.noise.point();
+        let least = margin + apart + self.noise.point_error();
         let reaches = |end: DVec2, inside: f64| {
             inside * disc_reach > least * ((end - center).length() + radius)
         };
@@ -278,13 +285,13 @@ impl<'a> MinkowskiDifference<'a> {
     #[inline]
     fn disc_reach_beyond_edge(&self, [from, to]: [DVec2; 2], length: f64, center: DVec2) -> f64 {
         let away = (to - from).perp_dot(center - from).abs() / length;
-        self.inner_radius() - (away + self.noise.point())
+        self.inner_radius() - (away + self.noise.point_error())
     }
 
     /// Returns the radius of a ball around the centre of `M` that lies inside `M`.
     #[inline]
     fn inner_radius(&self) -> f64 {
-        self.setting.moving.inertia().inner + self.setting.fixed.inertia().inner
+        self.setting.moving.inertia().inner_radius + self.setting.fixed.inertia().inner_radius
     }
 
     /// Checks whether a point of `M` near the line is an upper bound of the contact up to rounding.
@@ -293,12 +300,12 @@ impl<'a> MinkowskiDifference<'a> {
     /// `residual` is the lateral distance of the point from the line. See `docs/theory/inner-balls.md`,
     /// section "Upper bound at a point".
     pub(crate) fn is_upper_bound(&self, point: DVec3, residual: f64, normal: DVec3) -> bool {
-        let noise = self.noise.point();
-        let center = self.center();
+        let noise = self.noise.point_error();
+        let center = self.center_difference();
         let disc_reach = self.inner_radius() - (center.truncate().length() + noise);
         let rise = (center.z - point.z + noise) * (normal.z / normal.length());
         disc_reach > 0.0
-            && (residual + self.noise.lateral()) * rise <= MAX_RISE * noise * disc_reach
+            && (residual + self.noise.lateral_error()) * rise <= MAX_RISE * noise * disc_reach
     }
 
     /// Checks whether a point on an edge of `M` is an upper bound of the contact up to rounding. The edge
@@ -308,16 +315,16 @@ impl<'a> MinkowskiDifference<'a> {
     /// section "Upper bound on an edge".
     pub(crate) fn is_upper_bound_on_edge(
         &self,
-        edge: [&Point; 2],
+        edge: [&ShadowPoint; 2],
         point: DVec3,
         residual: f64,
         normal: DVec3,
     ) -> bool {
-        let noise = self.noise.point();
-        let away = residual + self.noise.lateral();
-        let [from, to] = edge.map(Point::shadow);
+        let noise = self.noise.point_error();
+        let away = residual + self.noise.lateral_error();
+        let [from, to] = edge.map(ShadowPoint::shadow);
         let length = (to - from).length();
-        let center = self.center();
+        let center = self.center_difference();
         let radius = self.inner_radius();
         let disc_reach = self.disc_reach_beyond_edge([from, to], length, center.truncate());
         let rise = (normal.dot(center - point) + radius * normal.truncate().length())
@@ -334,11 +341,11 @@ impl<'a> MinkowskiDifference<'a> {
 
     /// Computes the shadow of a pair's point in twice the working precision, with an error bound. Returns the
     /// cached value if the pair is that of the last call. `terms` are those of the pair.
-    fn cached_shadow(&self, pair: VertexPair, terms: &Terms) -> Shadow {
+    fn cached_shadow(&self, pair: VertexPair, terms: &PointTerms) -> Shadow {
         match self.shadow_cache.get() {
             Some((cached, shadow)) if cached == pair => shadow,
             _ => {
-                let new = orientation::shadow(terms, self.setting.direction);
+                let new = orientation::shadow_of_point(terms, self.setting.direction);
                 self.shadow_cache.set(Some((pair, new)));
                 new
             }
@@ -354,7 +361,7 @@ impl<'a> MinkowskiDifference<'a> {
             return None;
         }
         let exact = self.cached_shadow(pair, &self.setting.terms(pair));
-        orientation::rounded(&exact, &self.setting_from_shadow, self.setting.direction)
+        orientation::lateral_coordinates(&exact, &self.setting_from_shadow, self.setting.direction)
     }
 
     /// Checks whether the line passes to the left (`true`) or to the right of the directed segment between
@@ -364,7 +371,7 @@ impl<'a> MinkowskiDifference<'a> {
     /// broken by simulation of simplicity: the line is displaced symbolically by `(eps, eps^2)`. It is
     /// therefore never *on* a segment, and three consistent answers always mean a triangle that contains it.
     #[inline]
-    pub(crate) fn is_left(&self, from: &Point, to: &Point) -> bool {
+    pub(crate) fn is_left(&self, from: &ShadowPoint, to: &ShadowPoint) -> bool {
         match self.is_left_rounded(from, to) {
             Some(left) => left,
             None => self.is_left_exactly(from, to),
@@ -373,17 +380,18 @@ impl<'a> MinkowskiDifference<'a> {
 
     /// Returns the answer of [`Self::is_left`] if a rounded determinant decides it, otherwise `None`.
     #[inline]
-    pub(crate) fn is_left_rounded(&self, from: &Point, to: &Point) -> Option<bool> {
+    pub(crate) fn is_left_rounded(&self, from: &ShadowPoint, to: &ShadowPoint) -> Option<bool> {
         let (a, b) = (from.shadow(), to.shadow());
         let det = a.perp_dot(b);
         let size = a.x.abs() + a.y.abs() + b.x.abs() + b.y.abs();
-        (det.abs() > 2.0 * self.noise.point() * (size + self.noise.point())).then_some(det > 0.0)
+        (det.abs() > 2.0 * self.noise.point_error() * (size + self.noise.point_error()))
+            .then_some(det > 0.0)
     }
 
     /// Decides [`Self::is_left`] exactly. Widened bodies are decided in their rounded coordinates.
     #[cold]
     #[inline(never)]
-    fn is_left_exactly(&self, from: &Point, to: &Point) -> bool {
+    fn is_left_exactly(&self, from: &ShadowPoint, to: &ShadowPoint) -> bool {
         if self.widening == 0.0 {
             let setting = self.setting;
             let (a, b) = (setting.terms(from.pair), setting.terms(to.pair));
@@ -392,19 +400,20 @@ impl<'a> MinkowskiDifference<'a> {
             let (near, terms) = if from_is_near { (from.pair, &a) } else { (to.pair, &b) };
             let base = || self.cached_shadow(near, terms);
             let segment = to.shadow() - from.shadow();
-            if segment.length_squared() > self.touching() * self.touching() {
-                let side = orientation::side(
+            if segment.length_squared() > self.touching_distance() * self.touching_distance() {
+                let side = orientation::is_left_of_segment(
                     &base(),
                     segment,
                     &self.setting_from_shadow,
                     setting.direction,
-                    self.noise.point(),
+                    self.noise.point_error(),
                 );
                 if let Some(left) = side {
                     return left;
                 }
             }
-            return orientation::orientation(&a, &b, setting.direction, base) == Ordering::Greater;
+            return orientation::perturbed_orientation(&a, &b, setting.direction, base)
+                == Ordering::Greater;
         }
         // Widened bodies are defined by rounded coordinates, for which `orient2d` is exact.
         let (a, b) = (from.shadow(), to.shadow());

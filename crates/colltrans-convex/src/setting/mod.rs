@@ -35,13 +35,13 @@ impl VertexPair {
     /// Builds a pair from the vertex indices in the moving and in the fixed body.
     #[inline]
     #[doc(hidden)]
-    pub const fn of(moving: u32, fixed: u32) -> Self {
+    pub const fn from_indices(moving: u32, fixed: u32) -> Self {
         Self { moving: VertexId(moving), fixed: VertexId(fixed) }
     }
 
     /// Returns the vertex indices: `[moving, fixed]`.
     #[inline]
-    pub const fn numbers(self) -> [u32; 2] {
+    pub const fn indices(self) -> [u32; 2] {
         [self.moving.0, self.fixed.0]
     }
 }
@@ -74,12 +74,12 @@ pub fn check_length(length: f64) -> Result<(), QueryError> {
 /// Checks a minimum gap, in world units.
 ///
 /// # Errors
-/// Returns [`QueryError::Keep`] if the gap is negative, not finite or larger than [`MAX_MAGNITUDE`]. Without
-/// the feature `keep`, any gap except 0 is an error.
+/// Returns [`QueryError::MinGap`] if the gap is negative, not finite or larger than [`MAX_MAGNITUDE`]. Without
+/// the feature `min_gap`, any gap except 0 is an error.
 #[inline]
 pub fn check_min_gap(gap: f64) -> Result<(), QueryError> {
-    let most = if cfg!(feature = "keep") { MAX_MAGNITUDE } else { 0.0 };
-    if (0.0..=most).contains(&gap) { Ok(()) } else { Err(QueryError::Keep { gap }) }
+    let most = if cfg!(feature = "min-gap") { MAX_MAGNITUDE } else { 0.0 };
+    if (0.0..=most).contains(&gap) { Ok(()) } else { Err(QueryError::MinGap { gap }) }
 }
 
 /// Two placed bodies and a direction.
@@ -118,7 +118,7 @@ impl<'a, B> Setting<'a, B> {
         fixed: Placed<'a, B>,
         direction: DVec3,
     ) -> Result<Self, QueryError> {
-        Self::of(TwoBodies::new(moving, fixed), direction)
+        Self::from_bodies(TwoBodies::new(moving, fixed), direction)
     }
 
     /// Builds the setting of two bodies that are already in one frame.
@@ -127,7 +127,7 @@ impl<'a, B> Setting<'a, B> {
     /// Returns [`QueryError::Direction`] if the direction is zero, not finite or out of range.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
-    pub fn of(bodies: TwoBodies<'a, B>, direction: DVec3) -> Result<Self, QueryError> {
+    pub fn from_bodies(bodies: TwoBodies<'a, B>, direction: DVec3) -> Result<Self, QueryError> {
         check_direction(direction)?;
         let length = direction.length();
         Ok(Self { bodies, direction, length, unit: direction * (1.0 / length) })

@@ -8,12 +8,12 @@
 use derive_where::derive_where;
 use glam::{DMat3, DVec3};
 
-use crate::body::{ConvexPolyhedron, Hull, Placed, Pose};
+use crate::body::{ConvexPolyhedron, Placed, Pose, VertexHull};
 use crate::setting::VertexPair;
 use colltrans_kernel::error_free::{difference_error, sum_error};
-use colltrans_kernel::extent;
+use colltrans_kernel::height_bounds;
 use colltrans_kernel::noise::Noise;
-use colltrans_kernel::orientation::Terms;
+use colltrans_kernel::orientation::PointTerms;
 use colltrans_kernel::pose::MAX_STRETCH;
 use colltrans_kernel::range::MIN_MAGNITUDE;
 
@@ -62,14 +62,14 @@ impl<'a, B> TwoBodies<'a, B> {
     /// Returns the moving body with its pose in the world.
     #[inline]
     pub fn moving_placed(&self) -> Placed<'a, B> {
-        let pose = Pose::checked(self.moving_matrix, self.translations[0]);
+        let pose = Pose::from_checked_entries(self.moving_matrix, self.translations[0]);
         Placed { body: self.moving, pose }
     }
 
     /// Returns the fixed body with its pose in the world.
     #[inline]
     pub fn fixed_placed(&self) -> Placed<'a, B> {
-        let pose = Pose::checked(self.fixed_matrix, self.translations[1]);
+        let pose = Pose::from_checked_entries(self.fixed_matrix, self.translations[1]);
         Placed { body: self.fixed, pose }
     }
 
@@ -96,7 +96,7 @@ impl<'a, B> TwoBodies<'a, B> {
     /// A coordinate of the new offset below [`MIN_MAGNITUDE`] becomes 0.
     #[must_use]
     #[inline]
-    pub fn carried(&self, rotations: [DMat3; 2], by: [DVec3; 2]) -> Self {
+    pub fn with_poses_moved(&self, rotations: [DMat3; 2], by: [DVec3; 2]) -> Self {
         let mut moved = self.moved_by(by[0] - by[1]);
         for k in 0..3 {
             if moved.offset[k].abs() < MIN_MAGNITUDE {
@@ -110,7 +110,7 @@ impl<'a, B> TwoBodies<'a, B> {
 
     /// Returns other bodies in the poses of these.
     #[inline]
-    pub fn holding<'b, C>(&self, [moving, fixed]: [&'b C; 2]) -> TwoBodies<'b, C> {
+    pub fn with_bodies<'b, C>(&self, [moving, fixed]: [&'b C; 2]) -> TwoBodies<'b, C> {
         let Self { moving_matrix, fixed_matrix, translations, offset, offset_error, .. } = *self;
         TwoBodies { moving, moving_matrix, fixed, fixed_matrix, translations, offset, offset_error }
     }
@@ -122,33 +122,33 @@ impl<'a, B> TwoBodies<'a, B> {
     }
 }
 
-impl<B: Hull> TwoBodies<'_, B> {
+impl<B: VertexHull> TwoBodies<'_, B> {
     /// Returns the size `S` of the configuration, a bound on `|q - p|` over all points of the bodies.
     #[inline]
-    pub fn scale(&self) -> f64 {
+    pub fn size(&self) -> f64 {
         self.moving.reach() + self.fixed.reach() + self.offset.length()
     }
 
     /// Returns the bounds on rounding errors for the size `S`.
     #[inline]
     pub fn noise(&self) -> Noise {
-        Noise::of(self.scale())
+        Noise::for_size(self.size())
     }
 
     /// Returns a lower bound of `min_Q n.q - max_P n.p` for `n = normal`, accurate to little more than one
     /// rounding. Takes `O(n)` steps, because it examines all corners.
     #[inline]
     pub fn distance_along(&self, normal: DVec3) -> f64 {
-        let fixed = (self.fixed.corners(), &self.fixed_matrix);
-        let moving = (self.moving.corners(), &self.moving_matrix);
-        extent::distance(normal, fixed, moving, self.offset_and_error())
+        let fixed = (self.fixed.hull_vertices(), &self.fixed_matrix);
+        let moving = (self.moving.hull_vertices(), &self.moving_matrix);
+        height_bounds::distance_lower_bound(normal, fixed, moving, self.offset_and_error())
     }
 
     /// Returns the gap that the plane with this normal proves between the bodies, in world units, rounded
     /// down. A check accepts any gap up to this one.
     #[inline]
     pub fn proven_gap(&self, normal: DVec3) -> f64 {
-        let [_, square] = extent::dot(normal, normal);
+        let [_, square] = height_bounds::dot_bounds(normal, normal);
         (self.distance_along(normal) / square.sqrt().next_up()).next_down()
     }
 
@@ -181,7 +181,7 @@ impl TwoBodies<'_> {
     /// body. They are means if the weights have sum 1.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
-    pub fn weighted<const N: usize>(
+    pub fn weighted_points<const N: usize>(
         &self,
         pairs: &[VertexPair; N],
         weights: &[f64; N],
@@ -196,7 +196,7 @@ impl TwoBodies<'_> {
 
     /// Computes the point `q - p` of a pair of vertices, in the setting frame, with an error below `9 u S`.
     #[inline]
-    pub fn difference(&self, pair: VertexPair) -> DVec3 {
+    pub fn difference_point(&self, pair: VertexPair) -> DVec3 {
         let [p, q] = self.vertices(pair);
         self.fixed_matrix * q - self.moving_matrix * p + self.offset
     }
@@ -232,15 +232,15 @@ impl TwoBodies<'_> {
         normals: &[DVec3; 2],
         found: VertexPair,
     ) -> (VertexPair, f64) {
-        let (moving, p) = self.moving.settled(normals[0], found.moving.0);
-        let (fixed, q) = self.fixed.settled(-normals[1], found.fixed.0);
-        (VertexPair::of(moving, fixed), p + q + self.input_excess())
+        let (moving, p) = self.moving.support_with_excess(normals[0], found.moving.0);
+        let (fixed, q) = self.fixed.support_with_excess(-normals[1], found.fixed.0);
+        (VertexPair::from_indices(moving, fixed), p + q + self.input_excess())
     }
 
     /// Returns the sum of products that defines `q - p` for a pair of vertices, for exact evaluation.
-    pub(crate) fn terms(&self, pair: VertexPair) -> Terms<'_> {
+    pub(crate) fn terms(&self, pair: VertexPair) -> PointTerms<'_> {
         let [p, q] = self.vertices(pair);
-        Terms {
+        PointTerms {
             fixed: (&self.fixed_matrix, q),
             moving: (&self.moving_matrix, p),
             offset: [self.offset, self.offset_error],

@@ -11,7 +11,7 @@
 //! proof. A support point is searched only if this check fails.
 
 pub(crate) mod cta;
-pub mod keep;
+pub mod min_gap;
 pub mod nearest;
 pub mod observe;
 pub mod options;
@@ -27,7 +27,7 @@ use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
 use cta::options::Region;
-use cta::{Guess, MinimisationOptions, Origin, RegionFocus};
+use cta::{ContactGuess, LastSolution, MinimisationOptions, MinimisationStart};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, Options};
 use portal::{
@@ -38,7 +38,7 @@ use proof::ProvenFace;
 pub(crate) use warm_start::{TrackerUpdate, WarmStart};
 pub(crate) use warm_start_policy::WarmStartPolicy;
 
-/// Casts the moving body and returns the outcome. Ignores `options.keep`.
+/// Casts the moving body and returns the outcome. Ignores `options.min_gap`.
 ///
 /// The cast starts from the result of the previous one, `last`, as far as `focus` allows. If it
 /// succeeds, `next` holds the start of the following cast and the work counts.
@@ -119,9 +119,9 @@ enum Attempt {
 impl<O: Observer> CastState<'_, '_, '_, O> {
     /// Runs all stages of an attempt.
     fn run_stages(&mut self, focus: &Focus, last: &WarmStart) -> Result<Outcome, QueryError> {
-        self.context.watch.begun(|| ShadowFrame {
+        self.context.watch.search_started(|| ShadowFrame {
             world_from_shadow: self.context.difference.setting_from_shadow,
-            noise: self.context.difference.noise.point(),
+            noise: self.context.difference.noise.point_error(),
         });
         if focus.features
             && let Some(certificate) = self.separation_from_last(last)
@@ -135,7 +135,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
         } else {
             self.enclosure_from_scratch(focus.region, last)
         };
-        self.context.watch.ended(Phase::Finish);
+        self.context.watch.phase_ended(Phase::Finish);
         self.outcome_of(enclosure, Attempt::First)
     }
 
@@ -162,12 +162,12 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
     /// Returns [`QueryError::NotConverged`] with the last `reason` if no rotation is left.
     #[cold]
     fn retry_from_scratch(&mut self, reason: Stalled) -> Result<Outcome, QueryError> {
-        self.context.watch.ended(Phase::Finish);
+        self.context.watch.phase_ended(Phase::Finish);
         let steps = &mut self.context.watch.steps;
         self.rotation += usize::from(steps.started_from == StartedFrom::Scratch);
         steps.started_from = StartedFrom::Scratch;
         let Some(&rotation) = LATERAL_ROTATIONS.get(self.rotation) else {
-            self.context.watch.ended(Phase::Answer);
+            self.context.watch.phase_ended(Phase::Answer);
             return Err(QueryError::NotConverged { reason });
         };
         let setting = self.context.difference.setting;
@@ -186,7 +186,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
             return Ok(Outcome::Separated(self.separated_outcome(certificate)));
         }
         let widest = portal::widest_margin(&mut self.context, found);
-        if widest.margin < -self.context.difference.touching() {
+        if widest.margin < -self.context.difference.touching_distance() {
             return match attempt {
                 Attempt::First => self.enclose_again(&widest),
                 Attempt::Second => self.retry_from_scratch(Stalled::NoPortal),
@@ -202,7 +202,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
     #[inline]
     fn record_steps(&mut self) {
         self.next.steps = Some(self.context.watch.steps);
-        self.context.watch.ended(Phase::Answer);
+        self.context.watch.phase_ended(Phase::Answer);
     }
 
     /// Returns the outcome of a separation, and records the work counts.
@@ -272,7 +272,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a guess copied through memory stalls")]
     fn enclosure_from_guess(&mut self, start: NormalGuess) -> Option<Enclosure> {
-        self.context.watch.ended(Phase::Setup);
+        self.context.watch.phase_ended(Phase::Setup);
         if self.has_rims() {
             return self.enclosure_by_outlines(&start);
         }
@@ -327,7 +327,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
     #[inline]
     fn has_rims(&self) -> bool {
         let setting = self.context.difference.setting;
-        setting.moving.has_rims() || setting.fixed.has_rims()
+        setting.moving.may_have_rims() || setting.fixed.may_have_rims()
     }
 
     /// Returns a separating line along `lateral` if all of `M` lies on its positive side, up to the
@@ -342,8 +342,8 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
             return None;
         }
         let normal = lateral.try_normalize()?;
-        let least = -self.context.difference.touching();
-        if normal.dot(self.context.difference.vertex(near).shadow()) < least {
+        let least = -self.context.difference.touching_distance();
+        if normal.dot(self.context.difference.vertex_point(near).shadow()) < least {
             return None;
         }
         let point = self.context.difference.support_point_from(normal.extend(0.0), near);
@@ -358,10 +358,10 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
     fn narrowed_start(&mut self, region: Region, last: &WarmStart) -> NarrowedStart {
         if let Some(focus) = self.region_focus(region, last) {
             self.context.watch.steps.started_from = StartedFrom::Region;
-            return self.start_by_cta(Origin::Region(focus));
+            return self.start_by_cta(MinimisationStart::Region(focus));
         }
         match self.narrowing.start {
-            cta::options::Start::Center => self.start_by_cta(Origin::Center),
+            cta::options::Start::Center => self.start_by_cta(MinimisationStart::Center),
             cta::options::Start::Ellipsoids => self.start_from_ellipsoids(),
         }
     }
@@ -377,17 +377,17 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
         if normal.z > 0.0 {
             return NarrowedStart::Normal(ellipsoids);
         }
-        let support = self.context.difference.support(normal);
+        let support = self.context.difference.support_point(normal);
         self.context.watch.support(|| Support::from_point(normal, &support));
-        if normal.dot(support.at) > 0.0 {
+        if normal.dot(support.coordinates) > 0.0 {
             return NarrowedStart::Normal(NormalGuess::from_solver(normal, support.pair));
         }
-        self.start_by_cta(Origin::Center)
+        self.start_by_cta(MinimisationStart::Center)
     }
 
     /// Runs the collision translation algorithm and converts its result into a start.
-    fn start_by_cta(&mut self, origin: Origin) -> NarrowedStart {
-        self.context.watch.ended(Phase::Setup);
+    fn start_by_cta(&mut self, origin: MinimisationStart) -> NarrowedStart {
+        self.context.watch.phase_ended(Phase::Setup);
         let cta::options::Options { until, keeps_to_cell, cuts, starts_cold, .. } = self.narrowing;
         let gap = until.gap();
         let options = MinimisationOptions { start: origin, gap, keeps_to_cell, cuts, starts_cold };
@@ -400,14 +400,14 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
             return NarrowedStart::Enclosed(Enclosure::Portal(portal, PortalStatus::EnclosesLine));
         }
         let [moving, fixed] = narrowed.vertices;
-        let near = VertexPair::of(moving[0], fixed[0]);
+        let near = VertexPair::from_indices(moving[0], fixed[0]);
         let in_shadow = |normal| self.context.difference.setting_from_shadow.transpose() * normal;
         NarrowedStart::Normal(match narrowed.guess {
-            Guess::Contact { normal } => NormalGuess::from_solver(in_shadow(normal), near),
-            Guess::Separation { direction } => {
+            ContactGuess::Contact { normal } => NormalGuess::from_solver(in_shadow(normal), near),
+            ContactGuess::Separation { direction } => {
                 NormalGuess::from_solver(in_shadow(direction).with_z(0.0), near)
             }
-            Guess::Nothing => NormalGuess::from_ellipsoids(&self.context.difference),
+            ContactGuess::Nothing => NormalGuess::from_ellipsoids(&self.context.difference),
         })
     }
 
@@ -416,12 +416,12 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
     ///
     /// `None` for [`Region::Everywhere`], and if the previous cast left no contact or separation. For
     /// [`Region::Automatic`] also if the bodies have moved or rotated too far.
-    fn region_focus(&self, region: Region, last: &WarmStart) -> Option<RegionFocus> {
+    fn region_focus(&self, region: Region, last: &WarmStart) -> Option<LastSolution> {
         let setting = self.context.difference.setting;
         let (touching, normals, pair) = match last {
             WarmStart::Nothing | WarmStart::WithMinGap { .. } => return None,
             WarmStart::Contact(portal) => {
-                let touching = setting.weighted(&portal.pairs, &portal.weights);
+                let touching = setting.weighted_points(&portal.pairs, &portal.weights);
                 (touching, portal.normals, portal.pairs[0])
             }
             WarmStart::Apart { pair, normals } => (setting.vertices(*pair), *normals, *pair),
@@ -435,7 +435,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
             }
         };
         let worth = region != Region::Automatic || self.context.difference.is_near(half_side);
-        worth.then_some(RegionFocus { touching, half_side, pair, normal: normals[0] })
+        worth.then_some(LastSolution { touching, half_side, pair, normal: normals[0] })
     }
 
     /// Refines the portal, and returns a contact, or grazing if the overlap is within the tolerance. If the
@@ -455,9 +455,9 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
                 None => return self.retry_from_scratch(Stalled::Cycle),
             }
         };
-        let tolerance = self.graze_tolerance.max(self.context.difference.touching());
+        let tolerance = self.graze_tolerance.max(self.context.difference.touching_distance());
         let overlap = portal::overlap(&mut self.context, portal, tolerance);
-        self.context.watch.ended(Phase::Finish);
+        self.context.watch.phase_ended(Phase::Finish);
         let proven = match ProvenFace::new(&self.context.difference, portal, &plane, weights) {
             Ok(proven) => proven,
             Err(reason) => return self.retry_from_scratch(reason),
@@ -555,12 +555,12 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
     /// Returns the separation that a separating line proves. `None` if its margin may be due to rounding.
     #[inline]
     fn proven_separation(&mut self, found: &SeparatingLine) -> Option<Separation> {
-        if found.margin <= self.context.difference.noise.lowered() {
+        if found.margin <= self.context.difference.noise.lower_bound_margin() {
             return None;
         }
         let plane =
             Plane::at_support(&self.context.difference, found.normal.extend(0.0), found.point.pair);
-        let settled = found.normal.dot(self.context.difference.vertex(plane.lowest).shadow());
+        let settled = found.normal.dot(self.context.difference.vertex_point(plane.lowest).shadow());
         self.separation_by_plane(&plane, found.margin.min(settled))
     }
 
@@ -589,10 +589,11 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
         }
         let normal = lateral.extend(0.0);
         let plane = Plane::if_supported_at(&self.context.difference, normal, *pair)?;
-        let point = self.context.difference.vertex(plane.lowest);
+        let point = self.context.difference.vertex_point(plane.lowest);
         self.context.watch.support(|| Support::from_point(normal, &point));
         self.context.watch.steps.started_from = StartedFrom::Features;
-        let found = self.separation_by_plane(&plane, normal.dot(point.at) / lateral.length());
+        let found =
+            self.separation_by_plane(&plane, normal.dot(point.coordinates) / lateral.length());
         if found.is_none() {
             self.context.watch.steps.started_from = StartedFrom::Scratch;
         }
@@ -605,7 +606,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
     /// by less than twice the touching distance. A smaller margin is verified here.
     #[inline]
     fn passes_verification(&self, certificate: &Separation) -> bool {
-        certificate.margin > 2.0 * self.context.difference.noise.touching()
+        certificate.margin > 2.0 * self.context.difference.noise.touching_distance()
             || certificate.verify_with_gap(self.context.difference.setting, 0.0).is_ok()
     }
 }

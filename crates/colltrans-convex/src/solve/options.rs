@@ -1,8 +1,8 @@
 //! Options of a cast, and the use that a tracker makes of its last answer.
 
 use crate::answer::{
-    CentralCast, Contact, Grazing, NearPoints, OverlapAhead, PlaneGap, Separated, Solver, Steps,
-    WhyFree,
+    CentralCast, Contact, FreeReason, Grazing, NearPoints, OverlapAhead, PlaneGap, Separated,
+    Solver, Steps,
 };
 use crate::body::{Body, ConvexPolyhedron};
 use crate::setting::check_min_gap;
@@ -38,7 +38,7 @@ pub struct Options {
     pub narrowing: cta::Options,
     /// Minimum gap between the bodies (world units): the cast ends when their distance falls to this length. See
     /// [`Cast::keeping`](crate::Cast::keeping). The default is 0, with which the cast ends when the bodies touch.
-    pub keep: f64,
+    pub min_gap: f64,
 }
 
 impl Body for ConvexPolyhedron {
@@ -46,7 +46,7 @@ impl Body for ConvexPolyhedron {
     type Contact = Contact;
     type Grazing = Grazing;
     type Separated = Separated;
-    type Free = WhyFree;
+    type Free = FreeReason;
     type Overlap = OverlapAhead;
     type Evidence = CentralCast;
     type Near = NearPoints;
@@ -77,8 +77,8 @@ impl Options {
     /// Returns these options with another minimum gap (world units). It is not checked here; a cast rejects an invalid
     /// one.
     #[must_use]
-    pub const fn with_keep(self, keep: f64) -> Self {
-        Self { keep, ..self }
+    pub const fn with_min_gap(self, min_gap: f64) -> Self {
+        Self { min_gap: min_gap, ..self }
     }
 
     /// Checks that the lengths are in range.
@@ -86,11 +86,11 @@ impl Options {
     /// # Errors
     /// - [`QueryError::GrazeTolerance`] if the graze tolerance is negative or not finite.
     /// - [`QueryError::NarrowingGap`] if the gap at which [`Solver::Cta`] ends is negative or not a number.
-    /// - [`QueryError::Keep`] if the minimum gap is negative or beyond the range of coordinates, or not 0 without the
-    ///   feature `keep`.
+    /// - [`QueryError::MinGap`] if the minimum gap is negative or beyond the range of coordinates, or not 0 without the
+    ///   feature `min_gap`.
     #[inline]
     #[doc(hidden)]
-    pub fn check(&self) -> Result<(), QueryError> {
+    pub fn check_lengths(&self) -> Result<(), QueryError> {
         let tolerance = self.graze_tolerance;
         if !tolerance.is_finite() || tolerance < 0.0 {
             return Err(QueryError::GrazeTolerance { tolerance });
@@ -100,7 +100,7 @@ impl Options {
         {
             return Err(QueryError::NarrowingGap { gap });
         }
-        check_min_gap(self.keep)
+        check_min_gap(self.min_gap)
     }
 }
 
@@ -125,7 +125,7 @@ impl Focus {
 
     /// Returns the focus that a [`Tracker`](crate::Tracker) uses by default: for [`Solver::Cta`] the region alone, as
     /// in the paper, otherwise features and region.
-    pub const fn of(solver: Solver) -> Self {
+    pub const fn for_solver(solver: Solver) -> Self {
         let features = !matches!(solver, Solver::Cta);
         Self { features, region: cta::Region::Automatic }
     }
@@ -146,7 +146,7 @@ impl Focus {
 impl Default for Focus {
     /// Returns the focus for [`Solver::Auto`]: features first, then the region.
     fn default() -> Self {
-        Self::of(Solver::Auto)
+        Self::for_solver(Solver::Auto)
     }
 }
 
@@ -167,15 +167,15 @@ pub(crate) struct OptionsRecord {
     cuts: cta::Cuts,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     starts_cold: bool,
-    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
-    keep: f64,
+    #[serde(default, skip_serializing_if = "colltrans_kernel::serialization::is_zero")]
+    min_gap: f64,
 }
 
 #[cfg(feature = "serde")]
 impl From<Options> for OptionsRecord {
-    fn from(Options { solver, graze_tolerance, narrowing, keep }: Options) -> Self {
+    fn from(Options { solver, graze_tolerance, narrowing, min_gap }: Options) -> Self {
         let cta::Options { start, until, keeps_to_cell, cuts, starts_cold } = narrowing;
-        Self { solver, graze_tolerance, start, until, keeps_to_cell, cuts, starts_cold, keep }
+        Self { solver, graze_tolerance, start, until, keeps_to_cell, cuts, starts_cold, min_gap }
     }
 }
 
@@ -186,9 +186,9 @@ impl TryFrom<OptionsRecord> for Options {
     fn try_from(record: OptionsRecord) -> Result<Self, QueryError> {
         let OptionsRecord { start, until, keeps_to_cell, cuts, starts_cold, .. } = record;
         let narrowing = cta::Options { start, until, keeps_to_cell, cuts, starts_cold };
-        let OptionsRecord { solver, graze_tolerance, keep, .. } = record;
-        let options = Self { solver, graze_tolerance, narrowing, keep };
-        options.check()?;
+        let OptionsRecord { solver, graze_tolerance, min_gap, .. } = record;
+        let options = Self { solver, graze_tolerance, narrowing, min_gap: min_gap };
+        options.check_lengths()?;
         Ok(options)
     }
 }

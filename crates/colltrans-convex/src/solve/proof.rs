@@ -6,7 +6,7 @@ use crate::answer::{
     Certificate, Contact, Grazing, NormalBound, Separation, Solver, Steps, gap_rounding,
 };
 use crate::setting::error::Stalled;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 use crate::solve::WarmStart;
 use crate::solve::portal::{ContactPortal, Plane, Portal};
 use colltrans_kernel::noise::UNIT_VECTOR;
@@ -48,7 +48,7 @@ impl<'a> ProvenFace<'a> {
         let steepness = normal.dot(setting.direction);
         let bound = NormalBound::new(setting, noise, normal, normals, lowest, excess);
         let [_, v, w] = weights;
-        let [a, b, c] = portal.each_ref().map(Point::height);
+        let [a, b, c] = portal.each_ref().map(ShadowPoint::height);
         // For corners of equal height this is exactly their height, however the weights are rounded.
         let estimate = (a + (b - a) * v + (c - a) * w) / setting.length;
         let most = gap_rounding(setting, normal, noise, difference.widening);
@@ -62,11 +62,11 @@ impl<'a> ProvenFace<'a> {
         let lower = bound.lower_bound(steepness);
         // Widened bodies prove no upper bound for the given ones.
         let upper = if difference.widening == 0.0 {
-            (estimate + noise.raised() / steepness).next_up()
+            (estimate + noise.upper_bound_margin() / steepness).next_up()
         } else {
             f64::INFINITY
         };
-        let rounding = most + (noise.raised() + bound.error) / steepness;
+        let rounding = most + (noise.upper_bound_margin() + bound.error) / steepness;
         let translation = estimate.max(lower);
         Ok(Self { portal, plane, weights, translation, lower, upper, rounding })
     }
@@ -126,7 +126,7 @@ pub(crate) fn plane_separation(
     plane: &Plane,
     margin: f64,
 ) -> (Separation, WarmStart) {
-    let margin = margin - difference.noise.lowered() - plane.excess;
+    let margin = margin - difference.noise.lower_bound_margin() - plane.excess;
     let start = WarmStart::Apart { normals: plane.normals, pair: plane.lowest };
     (Separation { normal: plane.normal, margin }, start)
 }

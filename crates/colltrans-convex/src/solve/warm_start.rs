@@ -25,9 +25,9 @@ pub(crate) enum WarmStart {
     /// No earlier result: the cast starts from scratch.
     #[default]
     Nothing,
-    /// The bodies met at this portal.
+    /// The bodies met or grazed, and the line passed through this portal.
     Contact(ContactPortal),
-    /// The bodies missed each other, or grazed.
+    /// The bodies missed each other, or grazed so slightly that their contact was that of widened bodies.
     Apart {
         /// Separating direction, from the moving to the fixed body, in the frames of the moving and of the fixed body.
         normals: [DVec3; 2],

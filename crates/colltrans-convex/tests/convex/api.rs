@@ -3,8 +3,8 @@
 use colltrans_convex::cast;
 use colltrans_convex::{
     BuildError, Cast, Certificate, CertificateError, Clearance, ContactRange, ConvexPolyhedron,
-    HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, Options, Outcome, OverlapAhead, Pose, PoseError,
-    QueryError, Separation, TopologyError, VertexId, WhyFree, cta,
+    FreeReason, HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, Options, Outcome, OverlapAhead, Pose,
+    PoseError, QueryError, Separation, TopologyError, VertexId, cta,
 };
 use colltrans_testkit::oracle::exact::Vector;
 use colltrans_testkit::oracle::settings::{FAMILIES, Setting, setting};
@@ -174,11 +174,11 @@ fn a_box_before_a_box() {
     assert!(distance <= 2.0 && distance > 2.0 - 1e-13);
     assert_eq!(ahead.distance(), Some(distance));
     let away = go(DVec3::NEG_X).clearance().expect("an answer");
-    let Clearance::Free(WhyFree::Behind(last)) = away else { panic!("{away:?}") };
+    let Clearance::Free(FreeReason::Behind(last)) = away else { panic!("{away:?}") };
     assert!(away.is_free() && (last.translation - 2.0).abs() < 1e-13);
     assert!(go(DVec3::X).verify(&last.certificate).is_ok(), "that of the reversed cast");
     let aside = go(DVec3::Y).clearance().expect("an answer");
-    let Clearance::Free(WhyFree::Separated(separated)) = aside else { panic!("{aside:?}") };
+    let Clearance::Free(FreeReason::Separated(separated)) = aside else { panic!("{aside:?}") };
     assert!(go(DVec3::Y).verify(&separated.certificate).is_ok());
 }
 
@@ -189,8 +189,8 @@ fn touching_boxes_block_one_way_only() {
     let clearance = |direction| go(direction).clearance().expect("an answer");
     let ahead = clearance(DVec3::X);
     assert!(matches!(ahead, Clearance::Blocked { distance: 0.0, .. }), "{ahead:?}");
-    assert!(matches!(clearance(DVec3::NEG_X), Clearance::Free(WhyFree::Behind(_))));
-    assert!(matches!(clearance(DVec3::Y), Clearance::Free(WhyFree::Slides(_))));
+    assert!(matches!(clearance(DVec3::NEG_X), Clearance::Free(FreeReason::Behind(_))));
+    assert!(matches!(clearance(DVec3::Y), Clearance::Free(FreeReason::Slides(_))));
     assert_eq!(clearance(DVec3::Y).distance(), Some(f64::INFINITY));
     assert!(go(DVec3::X).intersects().expect("an answer").meets);
 }

@@ -5,7 +5,7 @@ use colltrans_convex::{
 };
 use colltrans_testkit::bodies::{at_xyz as at, block as cuboid, body};
 use colltrans_testkit::cases;
-use colltrans_testkit::oracle::nearest::Judge;
+use colltrans_testkit::oracle::nearest::DistanceJudge;
 use colltrans_testkit::oracle::settings::{FAMILIES, near_contact, setting};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::random_hull;
@@ -19,7 +19,7 @@ fn pose(rotation: DQuat, at: DVec3) -> Pose {
 fn judged(p: &ConvexPolyhedron, a: Pose, q: &ConvexPolyhedron, b: Pose) -> (Distance, f64) {
     let pair = Pair::new(p.at(a), q.at(b)).expect("a pair");
     let distance = pair.distance().expect("an answer");
-    let noises = Judge::new(pair).check(&distance).expect("a right answer");
+    let noises = DistanceJudge::new(pair).check(&distance).expect("a right answer");
     (distance, noises)
 }
 
@@ -93,7 +93,7 @@ fn near_contact_is_never_contact() {
                 (pose(random.rotation(), DVec3::ZERO), pose(random.rotation(), DVec3::X * 5.0));
             let way = judged(&p, a, &q, b).0;
             let normal = way.normal.expect("apart");
-            let near = a.translated(normal * (way.upper - gap)).expect("a pose");
+            let near = a.translated_by(normal * (way.upper - gap)).expect("a pose");
             let (distance, noises) = judged(&p, near, &q, b);
             assert!(distance.lower > 0.9 * gap && noises <= 4.0, "{vertices} {gap:e}: {noises}");
         }
@@ -150,7 +150,7 @@ fn within_a_length_or_not() {
             let [p, q] =
                 [bodies.moving.at(setting.moving_pose), bodies.fixed.at(setting.fixed_pose)];
             let pair = Pair::new(p, q).expect("a pair");
-            let judge = Judge::new(pair);
+            let judge = DistanceJudge::new(pair);
             let truth = judge.truth.to_f64();
             for length in [0.0, 0.5 * truth, truth, truth + 4.0 * judge.noise, 2.0 * truth, 1e9] {
                 let within = pair.within(length).expect("an answer");
@@ -222,8 +222,8 @@ fn depths_of_boxes_are_known() {
         let found = pair.depth().expect("an answer");
         assert!(found.lower <= depth && depth <= found.upper && found.upper - found.lower < 1e-13);
         assert_eq!(found.direction, direction, "{by}");
-        Judge::new(pair).check_depth(&found).expect("a right answer");
-        Judge::new(pair).compare_depth(&found).expect("a right answer");
+        DistanceJudge::new(pair).check_depth(&found).expect("a right answer");
+        DistanceJudge::new(pair).compare_depth(&found).expect("a right answer");
     }
     // Centred: any of six ways.
     let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(Pose::IDENTITY)).expect("a pair");
@@ -247,7 +247,7 @@ fn depths_of_all_families_are_right() {
                 [bodies.moving.at(moving.expect("a pose")), bodies.fixed.at(setting.fixed_pose)];
             let pair = Pair::new(p, q).expect("a pair");
             let depth = pair.depth().unwrap_or_else(|e| panic!("{setting}: {e}"));
-            let judge = Judge::new(pair);
+            let judge = DistanceJudge::new(pair);
             judge.check_depth(&depth).unwrap_or_else(|e| panic!("{setting}: {e}"));
             if p.body.vertices().len() + q.body.vertices().len() <= 16 {
                 judge.compare_depth(&depth).unwrap_or_else(|e| panic!("{setting}: {e}"));
@@ -301,7 +301,7 @@ fn tracked_distances_are_as_tight() {
             let a = pose(DQuat::from_rotation_z(angle), DVec3::new(3.0 - angle, 0.1, angle * 0.1));
             let pair = Pair::new(p.at(a), q.at(pose(rotation, DVec3::ZERO))).expect("a pair");
             let distance = tracker.distance(&pair).expect("an answer");
-            let noises = Judge::new(pair).check(&distance).expect("a right answer");
+            let noises = DistanceJudge::new(pair).check(&distance).expect("a right answer");
             assert!(noises <= 4.0, "{noises}");
         }
     }

@@ -55,12 +55,12 @@ fn hash_contact(hash: &mut Hash, contact: &Contact, cast: &Cast) {
     for pair in proof.pairs {
         hash.bits(u64::from(pair.moving.0) << 32 | u64::from(pair.fixed.0));
     }
-    let points = contact.points(cast);
+    let points = contact.witness_points(cast);
     hash.vector(points.on_moving);
     hash.vector(points.on_fixed);
     let features = contact.features(cast);
     for (feature, body) in [(features.moving, cast.moving()), (features.fixed, cast.fixed())] {
-        for VertexId(vertex) in feature.own_vertices(body) {
+        for VertexId(vertex) in feature.vertex_positions(body) {
             hash.bits(vertex.into());
         }
     }
@@ -129,7 +129,7 @@ fn convex(family: &str) -> u64 {
             }
         }
     }
-    hash.value()
+    hash.finish()
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Bounds hold for the points that bodies were made from, also where a hull leaves some of them out.
 
 use colltrans::motion::{Motion, MotionCast, MotionOutcome};
-use colltrans::{Among, FixedRotations, Obstacles};
+use colltrans::{FixedRotations, Obstacles, SceneQuery};
 use colltrans_convex::{Cast, ConvexPolyhedron, Outcome, Pair, Pose, Solver, Within};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::check::Judge;
@@ -76,7 +76,7 @@ fn distances_of_thin_far_plates_enclose_those_of_the_points() {
         assert!(depth.upper > 0.0 || !truth.is_zero(), "{case}: they meet, and have no depth");
         let mut obstacles = Obstacles::new();
         obstacles.insert(bodies[1].clone(), at);
-        let among = Among::new(bodies[0].at(at), &obstacles).expect("a scene");
+        let among = SceneQuery::new(bodies[0].at(at), &obstacles).expect("a scene");
         let near = among.nearest().expect("an answer").expect("there is one");
         assert!(square(near.lower) <= truth, "{case}: nearest, {:e} of {is:e}", near.lower);
     }
@@ -126,8 +126,8 @@ fn slides_of_thin_far_plates_stop_before_the_points_meet() {
         let bodies = points.each_ref().map(|p| ConvexPolyhedron::from_points(p).expect("points"));
         let truth = distance(&exact(&points[0]), &exact(&points[1])).square.sqrt_to_f64();
         let way = DVec3::Z * (4.0 * truth.max(1e-3));
-        let slide = Motion::slide(Pose::IDENTITY, way).expect("a motion");
-        let still = Motion::still(Pose::IDENTITY);
+        let slide = Motion::translation(Pose::IDENTITY, way).expect("a motion");
+        let still = Motion::at_rest(Pose::IDENTITY);
         let cast =
             MotionCast::new(bodies[0].along(&slide), bodies[1].along(&still)).expect("a cast");
         let free = match cast.first_contact() {

@@ -9,7 +9,7 @@ mod fuzz_corpus;
 mod golden;
 mod hull;
 mod input;
-mod keep;
+mod min_gap;
 mod offset;
 mod oracle;
 mod paper;

@@ -278,7 +278,7 @@ proptest! {
             (body.shrunk(amount).expect("an amount"), solid.shrunk(amount).expect("an amount"))
         };
         prop_assume!(report.vanished.is_empty() && same_edges(&body, &made));
-        prop_assume!(said.stuck.is_empty());
+        prop_assume!(said.fixed_vertices.is_empty());
         let mut compared = 0;
         for (v, &from) in made.vertices().iter().zip(made.input_indices()) {
             let Some(way) = tight(&body, from.0) else { continue };
@@ -333,7 +333,7 @@ fn compare_shrunk(
         .expect("a direction");
     match (cast.clearance().expect("an answer"), solids) {
         (Clearance::Blocked { contact, .. }, Clearance::Blocked { contact: other, .. }) => {
-            let [one, other] = [contact.translation, other.shrunk_distance.value];
+            let [one, other] = [contact.translation, other.offset_distance.value];
             let both = contact.certificate.rounding + 1e-9;
             if (one - other).abs() < both { Ok(true) } else { Err(format!("{one} and {other}")) }
         }

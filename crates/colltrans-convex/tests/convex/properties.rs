@@ -3,7 +3,7 @@
 use std::thread;
 
 use colltrans_convex::{
-    Clearance, ConvexPolyhedron, Outcome, OverlapAhead, Pose, QueryError, Solver, WhyFree,
+    Clearance, ConvexPolyhedron, FreeReason, Outcome, OverlapAhead, Pose, QueryError, Solver,
 };
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::scene::Scene;
@@ -78,7 +78,7 @@ fn moved(setting: &Setting, by: &Pose) -> Setting {
 }
 
 fn advanced(setting: &Setting, translation: f64) -> Pose {
-    setting.moving_pose.translated(setting.direction * translation).expect("in range")
+    setting.moving_pose.translated_by(setting.direction * translation).expect("in range")
 }
 
 proptest! {
@@ -196,7 +196,7 @@ proptest! {
                 prop_assert!((range[0] - first).abs() <= tolerance, "{setting}");
                 prop_assert!((range[1] - last).abs() <= tolerance, "{setting}");
             }
-            Clearance::Free(WhyFree::Behind(_)) => {
+            Clearance::Free(FreeReason::Behind(_)) => {
                 prop_assert!(last <= tolerance, "{setting}: range {first}..{last}");
             }
             free @ Clearance::Free(_) => prop_assert!(false, "{setting}: {free:?}, range {first}..{last}"),

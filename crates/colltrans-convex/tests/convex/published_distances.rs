@@ -1,7 +1,7 @@
 //! Distances and overlaps that published libraries are known to answer wrongly.
 
 use colltrans_convex::{ConvexPolyhedron, Depth, Distance, Pair, Pose, Within};
-use colltrans_testkit::oracle::nearest::Judge;
+use colltrans_testkit::oracle::nearest::DistanceJudge;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{cuboid, random_hull};
 use glam::{DMat3, DQuat, DVec3};
@@ -12,7 +12,7 @@ use crate::common::{at, body};
 fn asked(p: &ConvexPolyhedron, a: Pose, q: &ConvexPolyhedron, b: Pose) -> (Distance, Depth) {
     let pair = Pair::new(p.at(a), q.at(b)).expect("a pair");
     let (distance, depth) = (pair.distance().expect("an answer"), pair.depth().expect("an answer"));
-    let judge = Judge::new(pair);
+    let judge = DistanceJudge::new(pair);
     judge.check(&distance).expect("a right distance");
     judge.check_depth(&depth).expect("a right depth");
     (distance, depth)

@@ -1,6 +1,6 @@
 //! Unit cubes that slide past each other with a small lateral gap never count as contact.
 
-use colltrans_convex::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solver, WhyFree};
+use colltrans_convex::{Cast, Clearance, ConvexPolyhedron, FreeReason, Outcome, Pose, Solver};
 use colltrans_testkit::oracle::check::Judge;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::cuboid;
@@ -24,7 +24,10 @@ fn slide(gap: f64, rotation: DQuat, start: DVec3, origin: DVec3) {
             "gap {gap:e}, rotation {rotation}, start {start}, {solver:?}: {outcome:?}"
         );
         let clearance = cast.clearance();
-        assert!(matches!(clearance, Ok(Clearance::Free(WhyFree::Separated(_)))), "{clearance:?}");
+        assert!(
+            matches!(clearance, Ok(Clearance::Free(FreeReason::Separated(_)))),
+            "{clearance:?}"
+        );
     }
 }
 
@@ -75,5 +78,5 @@ fn cubes_without_a_gap_graze() {
     assert!((grazing.contact.translation - 2.0).abs() <= grazing.contact.certificate.rounding);
     assert!(grazing.separating_direction.distance(DVec3::NEG_Y) < 1e-12);
     let cast = Cast::new(cube.at(pose), cube.at(world), DVec3::X).expect("a query");
-    assert_eq!(cast.clearance(), Ok(Clearance::Free(WhyFree::Slides(grazing))));
+    assert_eq!(cast.clearance(), Ok(Clearance::Free(FreeReason::Slides(grazing))));
 }

@@ -5,11 +5,11 @@ use colltrans_convex::{
     Pose, QueryError, Solver, StartedFrom, Steps, Tracker, cta,
 };
 use colltrans_testkit::cases;
-use colltrans_testkit::oracle::check::same;
+use colltrans_testkit::oracle::check::compare_answers;
 use colltrans_testkit::oracle::sequences::Walk;
 use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting};
 use colltrans_testkit::oracle::shadow::sideways_overlap;
-use colltrans_testkit::oracle::tracked::{Lanes, track, without_steps};
+use colltrans_testkit::oracle::tracked::{Lanes, ignoring_steps, track};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{self, cuboid};
 use glam::{DQuat, DVec3};
@@ -84,7 +84,7 @@ fn ranges_agree(setting: &Setting, bodies: &Bodies, a: &ContactRange, b: &Contac
         ends.iter().zip(&judges).all(|(end, judge)| judge.compare_with_oracle(end).is_ok())
     };
     let alike = ends[0].len() == ends[1].len()
-        && ends[0].iter().zip(&ends[1]).all(|(a, b)| same(a, b).is_ok());
+        && ends[0].iter().zip(&ends[1]).all(|(a, b)| compare_answers(a, b).is_ok());
     alike || ends.iter().all(|ends| admissible(ends))
 }
 
@@ -265,7 +265,7 @@ fn check<'a>(tracker: &mut Tracker<'a>, setting: &Setting, bodies: &'a Bodies) -
     let one_off = setting.cast(bodies, Solver::Auto).expect("an answer");
     let judge = setting.judge(bodies);
     judge.check(&found).unwrap_or_else(|e| panic!("{e}\n{}", setting.dump()));
-    same(&found, &one_off).unwrap_or_else(|e| panic!("{e}\n{}", setting.dump()));
+    compare_answers(&found, &one_off).unwrap_or_else(|e| panic!("{e}\n{}", setting.dump()));
     found
 }
 
@@ -383,7 +383,7 @@ fn asked_again() {
     check(&mut tracker, &setting, &bodies);
     let again = check(&mut tracker, &setting, &bodies);
     let once_more = check(&mut tracker, &setting, &bodies);
-    assert_eq!(without_steps(&again), without_steps(&once_more));
+    assert_eq!(ignoring_steps(&again), ignoring_steps(&once_more));
     assert!(once_more.steps().supports <= 8, "{:?}", once_more.steps());
 }
 
@@ -420,7 +420,7 @@ fn steps_are_those_of_the_last_query() {
     let bodies = setting.bodies().expect("bodies");
     let there = setting.query(&bodies).expect("a query");
     let back = there.reversed();
-    let keeping = |gap| there.with_options(Options::default().with_keep(gap)).expect("a gap");
+    let keeping = |gap| there.with_options(Options::default().with_min_gap(gap)).expect("a gap");
     let [keeping, slightly] = [0.01, 1e-15].map(keeping);
     let mut tracker = Tracker::new();
     for cast in [&there, &back, &back, &keeping, &there, &slightly, &there, &back] {

@@ -30,14 +30,14 @@ pub struct Excess {
     #[cfg_attr(feature = "serde", serde(skip))]
     pub is_closed: bool,
     /// The largest depth of the part's surface below the hull's. `None` if the mesh has no faces, the search
-    /// exceeds its limit, or the feature `surface_depth` is off.
+    /// exceeds its limit, or the feature `depth` is off.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub depth: Option<f64>,
 }
 
 impl Excess {
     /// Measures the difference between a mesh and its convex hull.
-    pub fn of(mesh: &Mesh, hull: &ConvexPolyhedron) -> Self {
+    pub fn measure(mesh: &Mesh, hull: &ConvexPolyhedron) -> Self {
         let volume = mesh.signed_volume();
         let is_closed = !mesh.faces.is_empty() && mesh.open_edges().is_empty();
         Self {
@@ -140,14 +140,14 @@ mod tests {
             mesh.faces.iter_mut().for_each(|face| face.reverse());
         }
         let hull = ConvexPolyhedron::from_points(&mesh.vertices).unwrap();
-        let excess = Excess::of(&mesh, &hull);
+        let excess = Excess::measure(&mesh, &hull);
         assert_eq!((excess.hull_volume, excess.part_volume), (36.0, Some(32.0)));
         assert_eq!(excess.depth, Some(1.0), "the middle of the wall inside");
         assert!(excess.is_within(1.0, 4.0) && !excess.is_within(0.99, 4.0));
         mesh.faces.pop();
-        assert_eq!(Excess::of(&mesh, &hull).part_volume, None, "open");
+        assert_eq!(Excess::measure(&mesh, &hull).part_volume, None, "open");
         mesh.faces.clear();
-        assert_eq!(Excess::of(&mesh, &hull).depth, None, "points have no surface");
+        assert_eq!(Excess::measure(&mesh, &hull).depth, None, "points have no surface");
     }
 
     /// A prism over a regular polygon, which is its own hull (`teeth` is 0), or over a ring of teeth within

@@ -22,9 +22,9 @@ use glam::DVec3;
 use thiserror::Error;
 
 pub use excess::Excess;
-pub use note::{Left, Note, report_notes};
+pub use note::{Note, RemovedFaces, report_notes};
 
-use crate::words::counted;
+use crate::words::count_text;
 use crate::{Error, Mesh, ReadOptions, read_with};
 
 /// Default maximum depth of a face below the hull, relative to the extent of the used vertices. It is a hundred
@@ -142,7 +142,7 @@ impl<B> Loaded<B> {
 
 /// The kind of body into which a mesh can be converted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Take {
+pub enum BodyKind {
     /// A convex body. The faces of the mesh must be convex.
     Convex,
     /// The convex hull of the used vertices ([`BodyOptions::hull`]).
@@ -155,7 +155,7 @@ pub enum Take {
 
 /// The reason why a mesh is not a body of the requested kind.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum Refused {
+pub enum BodyError {
     /// The mesh is not a convex body.
     #[error(transparent)]
     Convex(#[from] BuildError),
@@ -164,24 +164,24 @@ pub enum Refused {
     Solid(#[from] SolidError),
     /// The mesh needs repair, which is disabled. The notes describe the repairs.
     #[error("the mesh needs repair, which is disabled: {}", joined_notes(.0))]
-    Mended(Vec<Note>),
+    NeedsRepair(Vec<Note>),
 }
 
-impl Refused {
+impl BodyError {
     /// Returns the kinds of body that may be possible for the same mesh.
-    pub fn instead(&self) -> &'static [Take] {
+    pub fn alternatives(&self) -> &'static [BodyKind] {
         match self {
             Self::Convex(BuildError::Topology(TopologyError::OpenEdge { .. })) => {
-                &[Take::Hull, Take::Open]
+                &[BodyKind::Hull, BodyKind::Open]
             }
             Self::Convex(
                 BuildError::NotConvex { .. }
                 | BuildError::InsideOut { .. }
                 | BuildError::Topology(_),
-            ) => &[Take::Solid, Take::Hull],
-            Self::Convex(_) | Self::Mended(_) => &[],
-            Self::Solid(SolidError::Open { .. }) => &[Take::Open, Take::Hull],
-            Self::Solid(_) => &[Take::Hull],
+            ) => &[BodyKind::Solid, BodyKind::Hull],
+            Self::Convex(_) | Self::NeedsRepair(_) => &[],
+            Self::Solid(SolidError::Open { .. }) => &[BodyKind::Open, BodyKind::Hull],
+            Self::Solid(_) => &[BodyKind::Hull],
         }
     }
 }
@@ -197,7 +197,7 @@ fn solid_message(error: &SolidError) -> String {
         SolidError::Open { count, from, to, facet } => format!(
             "the surface is not closed: {} a face on one side only, the first runs from vertex \
              {from} to vertex {to} of face {facet}",
-            counted(*count, "edge has", "edges have")
+            count_text(*count, "edge has", "edges have")
         ),
         SolidError::Empty => "the mesh has no faces with an area".into(),
         other => other.to_string(),
@@ -216,7 +216,7 @@ pub enum LoadError {
         /// The file.
         path: PathBuf,
         /// The reason.
-        source: Refused,
+        source: BodyError,
     },
 }
 
@@ -224,8 +224,8 @@ pub enum LoadError {
 /// set.
 ///
 /// # Errors
-/// [`Refused`] with the defect of the surface and its place.
-pub fn convex(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<ConvexPolyhedron>, Refused> {
+/// [`BodyError`] with the defect of the surface and its place.
+pub fn convex(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<ConvexPolyhedron>, BodyError> {
     let tolerance = options.convex_tolerance_of(mesh) * options.scale;
     let precision = mesh.precision * options.scale;
     let mut notes: Vec<Note> = Note::merged(mesh).into_iter().collect();
@@ -239,7 +239,7 @@ pub fn convex(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<ConvexPolyhed
     }
     let body = hull(&mesh)?;
     notes.extend(Note::stray(&mesh));
-    let excess = Excess::of(&mesh, &body);
+    let excess = Excess::measure(&mesh, &body);
     if !excess.is_within(tolerance, mesh.extent()) {
         notes.push(Note::Exceeds(excess));
     }
@@ -260,9 +260,9 @@ pub fn hull(mesh: &Mesh) -> Result<ConvexPolyhedron, BuildError> {
 /// reports repairs as notes.
 ///
 /// # Errors
-/// [`Refused`] with the defect of the surface and its place. Open surfaces and repairs are errors unless the
+/// [`BodyError`] with the defect of the surface and its place. Open surfaces and repairs are errors unless the
 /// options allow them.
-pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, Refused> {
+pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, BodyError> {
     let precision = mesh.precision * options.scale;
     let mut mesh = options.scaled(mesh);
     let (body, notes) = build_repaired(&mut mesh, options)?;
@@ -271,7 +271,7 @@ pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, Refuse
 
 /// The bodies of a mesh.
 #[derive(Debug, Clone)]
-pub struct Apart {
+pub struct SplitBodies {
     /// The bodies, each with its own vertices, in the order of their first faces.
     pub meshes: Vec<Mesh>,
     /// The repairs that preceded the split.
@@ -284,7 +284,7 @@ pub struct Apart {
 ///
 /// # Errors
 /// The errors of [`solid`] with open shells allowed.
-pub fn bodies(mesh: &Mesh, options: &BodyOptions) -> Result<Option<Apart>, Refused> {
+pub fn split_bodies(mesh: &Mesh, options: &BodyOptions) -> Result<Option<SplitBodies>, BodyError> {
     let mut mesh = options.scaled(mesh);
     let (solid, mut notes) = build_repaired(&mut mesh, &options.with_open(true))?;
     let of_triangle = solid.bodies();
@@ -298,14 +298,14 @@ pub fn bodies(mesh: &Mesh, options: &BodyOptions) -> Result<Option<Apart>, Refus
     }
     // Notes on single shells are reported for each body later.
     notes.retain(Note::is_of_file);
-    Ok(Some(Apart { meshes: mesh.picked(&of_face, count), notes }))
+    Ok(Some(SplitBodies { meshes: mesh.split_faces(&of_face, count), notes }))
 }
 
 /// Builds a solid from a mesh, with repairs if needed. Returns it with the notes.
 fn build_repaired(
     mesh: &mut Cow<Mesh>,
     options: &BodyOptions,
-) -> Result<(Solid, Vec<Note>), Refused> {
+) -> Result<(Solid, Vec<Note>), BodyError> {
     let mut notes: Vec<Note> = Note::merged(mesh).into_iter().collect();
     let mut built = Solid::from_mesh(&mesh.vertices, &mesh.faces);
     if let Err(SolidError::Inconsistent { .. } | SolidError::Open { .. }) = built {
@@ -321,9 +321,9 @@ fn build_repaired(
     }
     let body = built?;
     notes.extend(report_notes(body.report(), first));
-    let build_repaired = || notes.iter().filter(|note| note.is_mended());
+    let build_repaired = || notes.iter().filter(|note| note.is_repair());
     if options.as_is && build_repaired().next().is_some() {
-        return Err(Refused::Mended(build_repaired().cloned().collect()));
+        return Err(BodyError::NeedsRepair(build_repaired().cloned().collect()));
     }
     Ok((body, notes))
 }
@@ -357,7 +357,7 @@ pub fn load_solid(
 pub fn load<T>(
     path: impl AsRef<Path>,
     options: &BodyOptions,
-    take: impl FnOnce(Mesh, &BodyOptions) -> Result<T, Refused>,
+    take: impl FnOnce(Mesh, &BodyOptions) -> Result<T, BodyError>,
 ) -> Result<T, LoadError> {
     let path = path.as_ref();
     let read = ReadOptions::default().with_merge_tolerance(options.merge_tolerance);
@@ -372,7 +372,7 @@ pub fn load<T>(
 ///
 /// # Errors
 /// The errors of [`Cast::new`] and of its options.
-pub fn between<'a>(
+pub fn cast_between<'a>(
     moving: Placed<'a, Solid>,
     fixed: Placed<'a, Solid>,
     direction: DVec3,
@@ -401,8 +401,8 @@ pub fn between_motions<'a>(
     let cast = MotionCast::new(moving, fixed)?;
     let of_files = TOLERANCE_FACTOR * (precisions[0] + precisions[1]);
     match tolerance {
-        Some(tolerance) => cast.tolerating(tolerance),
-        None if of_files > cast.tolerance() => cast.tolerating(of_files),
+        Some(tolerance) => cast.with_tolerance(tolerance),
+        None if of_files > cast.tolerance() => cast.with_tolerance(of_files),
         None => Ok(cast),
     }
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use colltrans::solid::SolidReport;
 
 use super::Excess;
-use crate::words::{about, counted, six_digits};
+use crate::words::{count_text, rounded_up, six_digits};
 use crate::{Merged, Mesh};
 
 /// A repair of the mesh, or another difference between the body and the file. `Display` writes a text without
@@ -16,11 +16,11 @@ pub enum Note {
     /// Vertices on open edges were merged.
     Merged(Merged),
     /// Faces with the same corners as another one were removed.
-    Doubles(Left),
+    Duplicates(RemovedFaces),
     /// Fins, which adjoin the surface at a few edges, were removed.
-    Fins(Left),
+    Fins(RemovedFaces),
     /// Faces inside the surface were removed: walls between bodies, or the second of two ways to close a hole.
-    Walls(Left),
+    Walls(RemovedFaces),
     /// Number of faces that were oriented against the others of their shell, and were reversed.
     FacesTurned(usize),
     /// Number of shells that were inside out, and were reversed.
@@ -51,14 +51,14 @@ pub enum Note {
 
 /// Faces that were removed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Left {
+pub struct RemovedFaces {
     /// Number of faces.
     pub facets: usize,
     /// The area, in square units.
     pub area: f64,
 }
 
-impl Left {
+impl RemovedFaces {
     /// Adds a facet.
     pub(super) fn count(&mut self, area: f64) {
         self.facets += 1;
@@ -67,21 +67,22 @@ impl Left {
 }
 
 impl Note {
-    /// Checks whether faces of the file were merged, removed or reversed.
+    /// Checks whether vertices of the file were merged, or faces of the file were removed or reversed. Faces
+    /// without area do not count.
     const fn changes_faces(&self) -> bool {
         matches!(
             self,
             Self::Merged(_)
-                | Self::Doubles(_)
+                | Self::Duplicates(_)
                 | Self::Fins(_)
                 | Self::Walls(_)
                 | Self::FacesTurned(_)
         )
     }
 
-    /// Checks whether the surface differs from that of the file, because faces were merged, removed or
-    /// reversed.
-    pub const fn is_mended(&self) -> bool {
+    /// Checks whether the surface was repaired: vertices were merged, faces were removed or reversed, or whole
+    /// shells were reversed. Faces without area and closed slits do not count.
+    pub const fn is_repair(&self) -> bool {
         self.changes_faces() || matches!(self, Self::ShellsTurned(_))
     }
 
@@ -110,11 +111,11 @@ pub fn report_notes(report: &SolidReport, first: Option<[usize; 3]>) -> Vec<Note
         some(report.turned(), Note::ShellsTurned),
         some(report.facets_without_area, Note::WithoutArea),
         some(report.slits_closed, Note::SlitsClosed),
-        some(report.crowded_edges, Note::Crowded),
+        some(report.non_manifold_edges, Note::Crowded),
     ];
     let mut notes: Vec<Note> = mended.into_iter().flatten().collect();
     let open_edges = report.open_edges;
-    notes.extend(report.surface().map(|what| Note::Surface { open_edges, first, what }));
+    notes.extend(report.open_shell_summary().map(|what| Note::Surface { open_edges, first, what }));
     notes
 }
 
@@ -134,7 +135,9 @@ impl fmt::Display for Note {
             Self::Surface { open_edges, first, what } => {
                 return write_open_surface(f, *open_edges, *first, what);
             }
-            Self::Doubles(left) => return left.write_removed(f, "with the corners of another one"),
+            Self::Duplicates(left) => {
+                return left.write_removed(f, "with the corners of another one");
+            }
             Self::Fins(left) => return left.write_removed(f, "that hung on the surface"),
             Self::Walls(left) => return left.write_removed(f, "inside the surface"),
             Self::FacesTurned(n) => {
@@ -158,14 +161,14 @@ impl fmt::Display for Note {
                 "edges are shared by more than two faces",
             ),
         };
-        f.write_str(&counted(*count, one, many))
+        f.write_str(&count_text(*count, one, many))
     }
 }
 
-impl Left {
+impl RemovedFaces {
     /// Writes the note on these faces.
     fn write_removed(&self, f: &mut fmt::Formatter<'_>, which: &str) -> fmt::Result {
-        let faces = counted(self.facets, "face", "faces");
+        let faces = count_text(self.facets, "face", "faces");
         write!(f, "{faces} {which} left out (area {})", six_digits(self.area))
     }
 }
@@ -180,7 +183,7 @@ fn write_open_surface(
     if open_edges == 0 {
         return write!(f, "a surface with rims at edges where more than two faces meet: {what}");
     }
-    write!(f, "an open surface ({}", counted(open_edges, "open edge", "open edges"))?;
+    write!(f, "an open surface ({}", count_text(open_edges, "open edge", "open edges"))?;
     if let Some([from, to, face]) = first {
         write!(f, ", the first from vertex {from} to vertex {to} of face {face}")?;
     }
@@ -189,16 +192,16 @@ fn write_open_surface(
 
 impl fmt::Display for Merged {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let which = counted(self.vertices, "vertex", "vertices");
-        let (far, tolerance) = (about(self.largest_distance), about(self.tolerance));
+        let which = count_text(self.vertices, "vertex", "vertices");
+        let (far, tolerance) = (rounded_up(self.largest_distance), rounded_up(self.tolerance));
         write!(f, "{which} on open edges merged with another, at most {far} away")?;
         write!(f, " (tolerance {tolerance})")?;
         if self.dropped_faces > 0 {
             let (one, many) = ("face without area dropped", "faces without area dropped");
-            write!(f, "; {}", counted(self.dropped_faces, one, many))?;
+            write!(f, "; {}", count_text(self.dropped_faces, one, many))?;
         }
         if self.ambiguous > 0 {
-            let which = counted(self.ambiguous, "vertex", "vertices");
+            let which = count_text(self.ambiguous, "vertex", "vertices");
             write!(f, "; {which} had several candidates: the tolerance is large")?;
         }
         Ok(())

@@ -3,8 +3,8 @@
 //! 1. Facets that share an edge must run along it in opposite directions. This relation is propagated from
 //!    facet to facet over edges with two facets. In each connected part, the smaller set of facets is reversed.
 //! 2. The parts are then compared at crowded edges. If both directions occur equally often at an edge, they
-//!    remain. Otherwise inside and outside alternate around the edge, so each facet must run against the next
-//!    one.
+//!    remain. Otherwise, if the number of facets is even, inside and outside alternate around the edge, so each
+//!    facet must run against the next one. In each set of related facets, the minority is reversed.
 //!
 //! This module does not determine which side is outside.
 

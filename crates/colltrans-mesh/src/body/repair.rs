@@ -4,21 +4,22 @@
 //! An edge is *free* with one facet, and *crowded* with three or more. Steps, in this order:
 //!
 //! 1. Of facets with the same corners, one is kept.
-//! 2. *Fins* are removed: patches with a free edge that adjoin a crowded edge. The patches that adjoined these
-//!    fins follow.
-//! 3. *Walls* are removed: patches around which each edge has an odd number of facets. Of walls that share an
-//!    edge, those of pairs of opposite facets (a wall between two bodies) come first, then the smallest.
+//! 2. *Fins* are removed, repeatedly: patches with a free edge that adjoin a crowded edge.
+//! 3. *Walls* are removed, repeatedly: patches without a free edge whose crowded edges all have an odd number of
+//!    facets. Of walls that share an edge, those of pairs of opposite facets (a wall between two bodies) come
+//!    first, then the smallest.
 //! 4. Facets that are oriented against their neighbours are reversed ([`super::orient`]).
 //!
-//! Invariant: a piece from which facets were removed has only edges with an even number of facets, and the
-//! removed area is at most a hundredth ([`MAX_REMOVED_SHARE`]). Other pieces remain unchanged.
+//! The largest patch of a piece is never removed. Invariant of steps 1 to 3: a piece from which facets were removed
+//! has only edges with an even number of facets. Its fins and walls had at most a hundredth of its area
+//! ([`MAX_REMOVED_SHARE`]). All other pieces keep their facets.
 
 use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
 use super::orient::orient_consistently;
-use super::{Left, Note};
+use super::{Note, RemovedFaces};
 use crate::Mesh;
 use crate::edges::{FacetSide, area_normal, facet_sides, has_no_area, sides_by_edge};
 use crate::sets::OrientedSets;
@@ -32,11 +33,11 @@ const MAX_ROUNDS: usize = 16;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct RepairCounts {
     /// Facets with the same corners as another one.
-    pub(super) doubles: Left,
+    pub(super) doubles: RemovedFaces,
     /// Facets of fins.
-    pub(super) fins: Left,
+    pub(super) fins: RemovedFaces,
     /// Facets of walls.
-    pub(super) walls: Left,
+    pub(super) walls: RemovedFaces,
     /// Number of facets that were reversed.
     pub(super) turned: usize,
 }
@@ -44,10 +45,12 @@ pub(super) struct RepairCounts {
 impl RepairCounts {
     /// Returns the notes on the repair.
     pub(super) fn notes(self) -> impl Iterator<Item = Note> {
-        let left = |left: Left, note: fn(Left) -> Note| (left.facets > 0).then(|| note(left));
+        let left = |left: RemovedFaces, note: fn(RemovedFaces) -> Note| {
+            (left.facets > 0).then(|| note(left))
+        };
         let turned = (self.turned > 0).then_some(Note::FacesTurned(self.turned));
         let all = [
-            left(self.doubles, Note::Doubles),
+            left(self.doubles, Note::Duplicates),
             left(self.fins, Note::Fins),
             left(self.walls, Note::Walls),
             turned,
@@ -348,7 +351,7 @@ mod tests {
                 (doubles, of_fins),
                 "{case}"
             );
-            assert_eq!(repaired.walls, Left::default(), "{case}");
+            assert_eq!(repaired.walls, RemovedFaces::default(), "{case}");
             assert!(Solid::from_mesh(&spoilt.vertices, &spoilt.faces).is_ok(), "{case}");
         }
     }

@@ -21,7 +21,7 @@ fn mesh_files(folder: &Path) -> Vec<PathBuf> {
         let path = entry.unwrap().path();
         if path.is_dir() {
             found.extend(mesh_files(&path));
-        } else if Format::of_path(&path).is_ok() {
+        } else if Format::from_path(&path).is_ok() {
             found.push(path);
         }
     }

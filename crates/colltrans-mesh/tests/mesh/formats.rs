@@ -390,8 +390,8 @@ fn ply_errors_report_the_place() {
 
 #[test]
 fn extension_selects_the_format() {
-    assert_eq!(Format::of_path(Path::new("a.b/PART.Stl")).unwrap(), Format::Stl);
-    assert_eq!(Format::names("or"), "STL, OBJ, PLY, OFF or DAE");
+    assert_eq!(Format::from_path(Path::new("a.b/PART.Stl")).unwrap(), Format::Stl);
+    assert_eq!(Format::list_names("or"), "STL, OBJ, PLY, OFF or DAE");
     for path in ["part.step", "part", "stl"] {
         let message = colltrans_mesh::read(path).unwrap_err().to_string();
         assert!(message.contains(path) && message.contains("stl, obj, ply, off, dae"), "{message}");

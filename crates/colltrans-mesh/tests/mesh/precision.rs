@@ -6,7 +6,7 @@ use std::path::Path;
 use colltrans::Pose;
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::solid::StartOverlap;
-use colltrans_mesh::body::{BodyOptions, Note, between, convex, solid};
+use colltrans_mesh::body::{BodyOptions, Note, cast_between, convex, solid};
 use colltrans_mesh::{Format, Mesh, NumberFormat, parse};
 use colltrans_testkit::random::Random;
 
@@ -123,7 +123,7 @@ fn goes_through(parts: &[Mesh; 2], direction: DVec3) -> bool {
     let [moving, fixed] = loaded.each_ref().map(|part| part.body.at(Pose::IDENTITY));
     let precisions = [loaded[0].precision, loaded[1].precision];
     let refuse = StartOverlap::Refuse;
-    let cast = between(moving, fixed, direction, precisions, None, refuse).unwrap();
+    let cast = cast_between(moving, fixed, direction, precisions, None, refuse).unwrap();
     cast.clearance().unwrap().is_free()
 }
 

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::super::answer::{MotionOutcome, MotionSteps, Proven};
-use super::mechanism::Place;
+use super::super::answer::{HasProof, MotionOutcome, MotionSteps};
+use super::mechanism::PathPlace;
 use super::proof::PathProof;
 use colltrans_convex::body::{Features, Pose};
 
@@ -21,11 +21,15 @@ pub type PathOutcome = MotionOutcome<PathProof, PathContact>;
 pub struct PathContact {
     /// Time up to which no two bodies of any pair meet.
     pub lower: f64,
-    /// Time at which the two bodies meet; infinity (`null` in JSON) if a contact is not proven.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
+    /// Time at which the two bodies meet, or those of [`PathProof::meeting`] if the outcome is undecided; infinity
+    /// (`null` in JSON) if a contact is not proven.
+    #[cfg_attr(
+        feature = "serde",
+        serde(with = "colltrans_kernel::serialization::null_as_infinity")
+    )]
     pub upper: f64,
     /// Place on the path of the lower bound.
-    pub place: Place,
+    pub place: PathPlace,
     /// Numbers of the two bodies.
     pub pair: [usize; 2],
     /// Poses of the two bodies at this place, rounded.
@@ -42,8 +46,8 @@ pub struct PathContact {
     pub steps: MotionSteps,
 }
 
-impl Proven<PathProof> for PathContact {
-    fn proven(&self) -> (&PathProof, MotionSteps) {
+impl HasProof<PathProof> for PathContact {
+    fn proof_and_steps(&self) -> (&PathProof, MotionSteps) {
         (&self.proof, self.steps)
     }
 }

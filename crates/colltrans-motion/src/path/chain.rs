@@ -15,7 +15,7 @@ use glam::{DMat3, DVec3};
 
 use super::mechanism::{Joint, JointPath, Mechanism};
 use colltrans_convex::body::Pose;
-use colltrans_kernel::angle::turn;
+use colltrans_kernel::angle::sine_and_cosine;
 use colltrans_kernel::noise;
 use colltrans_kernel::range::MIN_MAGNITUDE;
 
@@ -162,7 +162,7 @@ impl Chain {
         let (mut rotation_error, mut off, mut extent) = (0.0, 0.0, 0.0);
         let mut add_vector = |length: f64, rotation_error: f64| {
             extent += length;
-            off += rotation_error * length + noise::WAY * extent;
+            off += rotation_error * length + noise::DISPLACEMENT * extent;
         };
         for joint in &self.joints {
             add_vector(joint.origin.translation().length(), rotation_error);
@@ -170,8 +170,9 @@ impl Chain {
             match joint.joint {
                 Joint::Fixed => {}
                 Joint::Turning(_) => {
-                    rotation_error +=
-                        PRODUCT_ERROR + noise::POSE + VALUE_ERROR * path.max_value(joint.column);
+                    rotation_error += PRODUCT_ERROR
+                        + noise::ROTATED_POINT
+                        + VALUE_ERROR * path.max_value(joint.column);
                 }
                 Joint::Sliding(_) => add_vector(
                     path.max_value(joint.column) * (1.0 + VALUE_ERROR),
@@ -225,7 +226,7 @@ impl Chain {
         m *= self.last.matrix();
         let columns = [m.x_axis, m.y_axis, m.z_axis].map(flush_tiny);
         let m = DMat3::from_cols(columns[0], columns[1], columns[2]);
-        (Pose::checked(m, flush_tiny(t)), rates)
+        (Pose::from_checked_entries(m, flush_tiny(t)), rates)
     }
 
     /// Returns bounds of the derivatives of the points of the body between a row and the next one.
@@ -257,8 +258,8 @@ impl Chain {
         DerivativeBounds { derivatives: derivatives.map(|x| x * BOUND_FACTOR), off }
     }
 
-    /// Returns an upper bound of the third derivative of the points of the body along normals between two given ones,
-    /// from a row to the next one.
+    /// Returns an upper bound of the component of the third derivative of the points of the body along any normal
+    /// between two given ones, from a row to the next one.
     pub(super) fn third_along(&self, path: &JointPath, row: usize, normals: [DVec3; 2]) -> f64 {
         let longest = normals[0].length().max(normals[1].length());
         let aside = normals.map(|n| n.cross(self.first_axis).length());
@@ -300,7 +301,7 @@ impl Chain {
 
 /// Returns the rotation about a unit vector by an angle.
 fn rotation_about(axis: DVec3, angle: f64) -> DMat3 {
-    let turn = turn(angle, 0.0);
+    let turn = sine_and_cosine(angle, 0.0);
     let turned = |z: DVec3| {
         let across = axis.cross(z);
         z + across * turn.sin + axis.cross(across) * turn.versine
@@ -336,7 +337,7 @@ mod tests {
         let mechanism = Mechanism::new((0..6).map(frame).collect()).unwrap();
         let rows = vec![vec![0.1, -0.4, 0.3, 1.0, 0.2], vec![0.5, 0.1, 0.6, 0.2, -0.7]];
         let corners = vec![DVec3::new(0.3, -0.2, 0.1), DVec3::new(-0.1, 0.4, 0.5)];
-        (mechanism, JointPath::evenly(rows).unwrap(), corners)
+        (mechanism, JointPath::at_unit_times(rows).unwrap(), corners)
     }
 
     #[test]
@@ -377,7 +378,7 @@ mod tests {
             Frame { parent: None, origin: Pose::IDENTITY, joint },
             Frame { parent: Some(0), origin: elbow, joint },
         ];
-        let path = JointPath::evenly(vec![vec![0.0, 0.0], vec![1.0, 0.0]]).unwrap();
+        let path = JointPath::at_unit_times(vec![vec![0.0, 0.0], vec![1.0, 0.0]]).unwrap();
         let mechanism = Mechanism::new(frames).unwrap();
         let corners = [DVec3::new(0.5, 0.0, 0.0)];
         let chain = Chain::new(&mechanism, &[0, 1], &path, Pose::IDENTITY, &corners);

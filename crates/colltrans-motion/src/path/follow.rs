@@ -1,17 +1,17 @@
 //! Follows two convex pieces along a path: planes between them, up to a place or to a contact.
 //!
-//! Pieces far from each other are sampled at distances over many rows. Near each other, the search for two moving
-//! bodies runs from row to row.
+//! Pieces far from each other are sampled at places that may be many rows apart: the gaps of two planes prove the time
+//! between them. Near each other, the search for two moving bodies runs from row to row.
 
-use super::super::proof::{Met, PlaneAt};
+use super::super::proof::{ContactProof, TimedPlane};
 use super::super::sample::{ConvexSampler, Sampler};
 use super::super::search::{SpanEnd, SpanResult, prove_span};
 use super::link_pair::LinkPair;
-use super::mechanism::Place;
-use super::proof::Stretch;
+use super::mechanism::PathPlace;
+use super::proof::PlaneStretch;
 use colltrans_convex::body::ConvexPolyhedron;
 
-/// Shares of the gap by which both pieces may move up to the next sample: the first attempt, and the second one.
+/// Shares of the gap by which both pieces together may move up to the next sample: first and second attempt.
 const LEAP_SHARES: [f64; 2] = [1.5, 0.9];
 
 /// Result of following two pieces.
@@ -20,8 +20,8 @@ pub(super) enum FollowEnd {
     /// They are separated up to the end.
     Apart,
     /// They meet at this place.
-    Met(Place, Met),
-    /// They come nearer than rounding errors can decide.
+    Met(PathPlace, ContactProof),
+    /// They are so near that rounding errors hide whether they meet.
     Indeterminate,
     /// The search took its maximum number of steps.
     Stalled,
@@ -30,32 +30,32 @@ pub(super) enum FollowEnd {
 /// The planes up to a place.
 #[derive(Debug, Default)]
 pub(super) struct PlanePath {
-    pub(super) stretches: Vec<Stretch>,
+    pub(super) stretches: Vec<PlaneStretch>,
 }
 
 impl PlanePath {
     /// Appends a plane to the planes of its row.
-    pub(super) fn append_plane(&mut self, row: usize, plane: PlaneAt) {
+    pub(super) fn append_plane(&mut self, row: usize, plane: TimedPlane) {
         match self.stretches.last_mut() {
             Some(last) if last.row == row => {
                 if last.planes.last() != Some(&plane) {
                     last.planes.push(plane);
                 }
             }
-            _ => self.stretches.push(Stretch { row, planes: vec![plane] }),
+            _ => self.stretches.push(PlaneStretch { row, planes: vec![plane] }),
         }
     }
 
     /// Appends a plane that only the gaps connect to the previous one.
-    pub(super) fn append_stretch(&mut self, row: usize, plane: PlaneAt) {
-        self.stretches.push(Stretch { row, planes: vec![plane] });
+    pub(super) fn append_stretch(&mut self, row: usize, plane: TimedPlane) {
+        self.stretches.push(PlaneStretch { row, planes: vec![plane] });
     }
 
     /// Returns the place and the gap of the last plane. Returns `None` if there is no plane.
-    pub(super) fn last_plane(&self) -> Option<(Place, f64)> {
+    pub(super) fn last_plane(&self) -> Option<(PathPlace, f64)> {
         let last = self.stretches.last()?;
         let plane = last.planes.last()?;
-        Some((Place { row: last.row, share: plane.time }, plane.gap))
+        Some((PathPlace { row: last.row, share: plane.time }, plane.gap))
     }
 }
 
@@ -68,28 +68,36 @@ pub(super) struct PiecePair<'p> {
 
 impl PiecePair<'_> {
     /// Returns the plane between the pieces at a place. Returns `None` if separation is not proven.
-    pub(super) fn plane_at(&self, sampler: &mut ConvexSampler, place: Place) -> Option<PlaneAt> {
+    pub(super) fn plane_at(
+        &self,
+        sampler: &mut ConvexSampler,
+        place: PathPlace,
+    ) -> Option<TimedPlane> {
         let motion = self.link_pair.segment_motion(self.pieces, place.row, [place.share; 2]);
         let sample = sampler.sample(&motion, place.share);
         let (time, normal, gap) = (place.share, sample.normal, sample.gap);
-        sample.is_apart().then_some(PlaneAt { time, normal, gap, alone: false })
+        sample.is_apart().then_some(TimedPlane { time, normal, gap, alone: false })
     }
 
     /// Returns the proof that the pieces meet at a place, or `None`.
-    pub(super) fn prove_contact(&self, sampler: &mut ConvexSampler, place: Place) -> Option<Met> {
+    pub(super) fn prove_contact(
+        &self,
+        sampler: &mut ConvexSampler,
+        place: PathPlace,
+    ) -> Option<ContactProof> {
         let motion = self.link_pair.segment_motion(self.pieces, place.row, [place.share; 2]);
         sampler.prove_contact(&motion, place.share)
     }
 
-    /// Moves from a place with a plane as far as gaps alone prove. Returns the new place and its plane, or `None` if it
-    /// would be before `least`.
+    /// Finds a later place with a plane, such that the gaps at both places prove the time between them. Returns the new
+    /// place and its plane. Returns `None` if the place would be before `least`, or if no attempt succeeds.
     pub(super) fn leap_by_gaps(
         &self,
         sampler: &mut ConvexSampler,
-        (from, gap): (Place, f64),
-        least: Place,
-        until: Place,
-    ) -> Option<(Place, PlaneAt)> {
+        (from, gap): (PathPlace, f64),
+        least: PathPlace,
+        until: PathPlace,
+    ) -> Option<(PathPlace, TimedPlane)> {
         let mut tried = None;
         for share in LEAP_SHARES {
             let place = self.link_pair.place_within(from, until, share * gap);
@@ -110,8 +118,8 @@ impl PiecePair<'_> {
     pub(super) fn follow_pieces(
         &self,
         sampler: &mut ConvexSampler,
-        from: Place,
-        until: Place,
+        from: PathPlace,
+        until: PathPlace,
     ) -> (PlanePath, FollowEnd) {
         let mut plane_path = PlanePath::default();
         if let Some(plane) = self.plane_at(sampler, from) {
@@ -126,7 +134,7 @@ impl PiecePair<'_> {
                 None => (from, 0.0),
             };
             // Near each other, the search within a row proves more.
-            let next = Place::at_row(place.row + 1).earlier_of(until);
+            let next = PathPlace::at_row(place.row + 1).earlier_of(until);
             if gap > 0.0
                 && let Some((place, plane)) = self.leap_by_gaps(sampler, (place, gap), next, until)
             {
@@ -144,8 +152,8 @@ impl PiecePair<'_> {
     fn follow_row(
         &self,
         sampler: &mut ConvexSampler,
-        from: Place,
-        until: Place,
+        from: PathPlace,
+        until: PathPlace,
         plane_path: &mut PlanePath,
     ) -> FollowEnd {
         let row = from.row;
@@ -157,7 +165,7 @@ impl PiecePair<'_> {
         }
         match end {
             SpanEnd::Free => FollowEnd::Apart,
-            SpanEnd::Met(share, met) => FollowEnd::Met(Place { row, share }, met),
+            SpanEnd::Met(share, met) => FollowEnd::Met(PathPlace { row, share }, met),
             SpanEnd::Stalled => FollowEnd::Stalled,
             // Pieces that cannot be separated at the end of a row may meet at the start of the next one.
             SpanEnd::Indeterminate
@@ -166,7 +174,7 @@ impl PiecePair<'_> {
                 let next = self.link_pair.segment_motion(self.pieces, row + 1, [0.0, 1.0]);
                 match prove_span(&next, sampler) {
                     SpanResult { planes, end: SpanEnd::Met(share, met) } if planes.is_empty() => {
-                        FollowEnd::Met(Place { row: row + 1, share }, met)
+                        FollowEnd::Met(PathPlace { row: row + 1, share }, met)
                     }
                     _ => FollowEnd::Indeterminate,
                 }

@@ -17,14 +17,14 @@ use super::super::curvature::SupportSearch;
 use super::super::relative_motion::RelativeMotion;
 use super::super::span::Instant;
 use super::chain::{BOUND_FACTOR, Chain, DerivativeBounds, PointRates};
-use super::mechanism::{JointPath, Place};
+use super::mechanism::{JointPath, PathPlace};
 use colltrans_convex::body::{ConvexPolyhedron, Placed};
 use colltrans_convex::setting::TwoBodies;
 use colltrans_kernel::noise;
 use colltrans_solid::body::Solid;
 
-/// Ratio of the bound along a normal to the bound in all directions, below which the former is used. Points then move
-/// almost parallel to a plane.
+/// Ratio of the bound of the third derivative along a normal to the bound in all directions, below which the former is
+/// used. Points then move almost parallel to a plane.
 const FLAT_RATIO: f64 = 1e-2;
 
 /// Two bodies and the joints that carry them.
@@ -50,14 +50,14 @@ impl<'a> LinkPair<'a> {
     }
 
     /// Returns an upper bound of the distance that both bodies together move from the start to a place.
-    pub(super) fn travel_to(&self, place: Place) -> f64 {
+    pub(super) fn travel_to(&self, place: PathPlace) -> f64 {
         let current = self.travel[place.row];
         let next = self.travel.get(place.row + 1).unwrap_or(&current);
         current + place.share * (next - current)
     }
 
     /// Checks whether gaps at two places prove all places between them.
-    pub(super) fn gaps_prove_between(&self, places: [Place; 2], gaps: [f64; 2]) -> bool {
+    pub(super) fn gaps_prove_between(&self, places: [PathPlace; 2], gaps: [f64; 2]) -> bool {
         if places[0].normalised() == places[1].normalised() {
             return true;
         }
@@ -66,7 +66,7 @@ impl<'a> LinkPair<'a> {
     }
 
     /// Returns the last place, not after `until`, up to which both bodies together move by at most about `length`.
-    pub(super) fn place_within(&self, from: Place, until: Place, length: f64) -> Place {
+    pub(super) fn place_within(&self, from: PathPlace, until: PathPlace, length: f64) -> PathPlace {
         let most = self.travel_to(from) + length;
         if self.travel_to(until) <= most {
             return until;
@@ -75,14 +75,14 @@ impl<'a> LinkPair<'a> {
         let (current, next) =
             (self.travel[row], self.travel.get(row + 1).unwrap_or(&f64::INFINITY));
         let share = ((most - current) / (next - current)).clamp(0.0, 1.0);
-        Place { row, share }.normalised()
+        PathPlace { row, share }.normalised()
     }
 
     /// Returns both solids at a place, and the error bound of computed places of one relative to the other.
     pub(super) fn place_solids<'s>(
         &self,
         [moving, fixed]: [&'s Solid; 2],
-        place: Place,
+        place: PathPlace,
     ) -> (TwoBodies<'s, Solid>, f64) {
         let [p, q] = self
             .chains
@@ -90,7 +90,7 @@ impl<'a> LinkPair<'a> {
             .map(|chain| chain.pose_and_rates(self.path, place.row, place.share).0);
         let bodies =
             TwoBodies::new(Placed { body: moving, pose: p }, Placed { body: fixed, pose: q });
-        let off = bodies.noise().point() + self.chains[0].error + self.chains[1].error;
+        let off = bodies.noise().point_error() + self.chains[0].error + self.chains[1].error;
         (bodies, off)
     }
 
@@ -104,7 +104,10 @@ impl<'a> LinkPair<'a> {
         let derivative_bounds =
             self.chains.each_ref().map(|chain| chain.derivative_bounds(self.path, row));
         let left_out = pieces.map(ConvexPolyhedron::hull_error).iter().sum::<f64>();
-        let error = self.chains[0].error + self.chains[1].error + left_out + noise::FLUSHED;
+        let error = self.chains[0].error
+            + self.chains[1].error
+            + left_out
+            + noise::FLUSHED_POSE_COORDINATES;
         WaypointSegment {
             path: self.path,
             chains: &self.chains,

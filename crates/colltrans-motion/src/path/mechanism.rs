@@ -13,7 +13,7 @@ use colltrans_convex::setting::error::QueryError;
 use colltrans_kernel::angle;
 use colltrans_kernel::error::PoseError;
 use colltrans_kernel::noise;
-use colltrans_kernel::range::{MAX_MAGNITUDE, is_in_exact_range, without_traces};
+use colltrans_kernel::range::{MAX_MAGNITUDE, is_in_exact_range, with_tiny_components_zeroed};
 
 /// A frame that a joint carries.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,7 +24,10 @@ use colltrans_kernel::range::{MAX_MAGNITUDE, is_in_exact_range, without_traces};
 )]
 pub struct Frame {
     /// Number of the parent frame, which is smaller than that of this frame; `None` for the world.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "colltrans_kernel::serialization::required_option")
+    )]
     pub parent: Option<usize>,
     /// Pose of the joint in the parent frame.
     pub origin: Pose,
@@ -59,7 +62,7 @@ impl Joint {
     }
 }
 
-/// A tree of frames, in the order of their numbers.
+/// A tree of frames. The number of a frame is its index in the list; a parent has a smaller number than its children.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -94,13 +97,13 @@ impl Mechanism {
             }
             if let Joint::Turning(axis) | Joint::Sliding(axis) = &mut frame.joint {
                 let length = axis.length();
-                if !(is_in_exact_range(without_traces(*axis)) && length > 0.0) {
+                if !(is_in_exact_range(with_tiny_components_zeroed(*axis)) && length > 0.0) {
                     return Err(PathError::Axis { frame: k, axis: *axis });
                 }
                 if (length - 1.0).abs() > noise::UNIT_VECTOR {
                     *axis /= length;
                 }
-                *axis = without_traces(*axis);
+                *axis = with_tiny_components_zeroed(*axis);
             }
         }
         Ok(Self { frames })
@@ -112,7 +115,7 @@ impl Mechanism {
     }
 
     /// Returns the number of joints that move. A row has a value for each of them, in the order of the frames.
-    pub fn joints(&self) -> usize {
+    pub fn joint_count(&self) -> usize {
         self.frames.iter().filter(|frame| frame.joint != Joint::Fixed).count()
     }
 
@@ -175,7 +178,7 @@ impl JointPath {
     ///
     /// # Errors
     /// Returns the errors of [`Self::new`].
-    pub fn evenly(rows: Vec<Vec<f64>>) -> Result<Self, PathError> {
+    pub fn at_unit_times(rows: Vec<Vec<f64>>) -> Result<Self, PathError> {
         Self::new((0..rows.len()).map(|k| k as f64).collect(), rows)
     }
 
@@ -190,12 +193,12 @@ impl JointPath {
     }
 
     /// Returns the first and the last time.
-    pub fn ends(&self) -> [f64; 2] {
+    pub fn time_range(&self) -> [f64; 2] {
         [self.times[0], self.times[self.times.len() - 1]]
     }
 
     /// Checks whether a place is on the path.
-    pub(super) fn contains(&self, Place { row, share }: Place) -> bool {
+    pub(super) fn contains(&self, PathPlace { row, share }: PathPlace) -> bool {
         row < self.last_row() && (0.0..=1.0).contains(&share)
             || row == self.last_row() && share == 0.0
     }
@@ -206,7 +209,7 @@ impl JointPath {
     }
 
     /// Returns bounds of the time of a place.
-    pub(super) fn time_bounds(&self, place: Place) -> [f64; 2] {
+    pub(super) fn time_bounds(&self, place: PathPlace) -> [f64; 2] {
         let current = self.times[place.row];
         if place.share == 0.0 {
             return [current; 2];
@@ -234,7 +237,7 @@ impl JointPath {
 
     /// Checks that the rows have one value in range for each joint of a mechanism.
     pub(super) fn check_rows(&self, mechanism: &Mechanism) -> Result<(), PathError> {
-        let joints = mechanism.joints();
+        let joints = mechanism.joint_count();
         let columns = mechanism.joint_columns();
         for (row, values) in self.rows.iter().enumerate() {
             if values.len() != joints {
@@ -244,7 +247,7 @@ impl JointPath {
                 let Some(column) = *column else { continue };
                 let value = values[column];
                 let most = match mechanism.frames[frame].joint {
-                    Joint::Turning(_) => angle::MOST,
+                    Joint::Turning(_) => angle::MAX_ANGLE,
                     _ => MAX_MAGNITUDE,
                 };
                 if value.is_nan() || value.abs() > most {
@@ -263,14 +266,14 @@ impl JointPath {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
-pub struct Place {
+pub struct PathPlace {
     /// Index of the row, from 0.
     pub row: usize,
     /// Share of the interval to the next row, from 0 to 1.
     pub share: f64,
 }
 
-impl Place {
+impl PathPlace {
     /// The start of a path.
     pub(super) const START: Self = Self { row: 0, share: 0.0 };
 
@@ -321,7 +324,7 @@ pub enum PathError {
         /// Number of the frame.
         frame: usize,
     },
-    /// An axis has no direction.
+    /// An axis is zero, not finite or out of range.
     #[error("axis {:?} of frame {frame} is zero, not finite or out of range", .axis.to_array())]
     Axis {
         /// Number of the frame.
@@ -340,7 +343,7 @@ pub enum PathError {
         /// Number of rows.
         rows: usize,
     },
-    /// A time does not increase.
+    /// A time does not increase from the previous row, or is out of range.
     #[error("invalid time {time} of row {row}; times must be finite and increase from row to row")]
     Time {
         /// Index of the row, from 0.
@@ -379,7 +382,7 @@ pub enum PathError {
         /// Number of the frame.
         frame: usize,
     },
-    /// A pair does not consist of two bodies.
+    /// A pair does not refer to two different bodies that exist.
     #[error(
         "invalid pair of bodies {} and {}; a pair needs the numbers of two different bodies",
         .pair[0],
@@ -391,13 +394,13 @@ pub enum PathError {
     },
     /// The minimum gap is invalid.
     #[error("invalid minimum gap {gap}; accepted: finite, from 0 to 2^200")]
-    Keep {
+    MinGap {
         /// The gap, as given.
         gap: f64,
     },
     /// A body can move out of range.
     #[error("body {body} can be farther than 2^200 from the start of its chain of frames")]
-    Far {
+    OutOfRange {
         /// Number of the body.
         body: usize,
     },

@@ -19,11 +19,11 @@
 //! ])?;
 //! // A thin wall is in its way; the rows are far apart.
 //! let wall = ConvexPolyhedron::cuboid(DVec3::new(-9.0, 1.5, -9.0), DVec3::new(9.0, 1.5001, 9.0))?;
-//! let path = JointPath::evenly(vec![vec![0.0, 0.0], vec![std::f64::consts::PI, 0.0]])?;
+//! let path = JointPath::at_unit_times(vec![vec![0.0, 0.0], vec![std::f64::consts::PI, 0.0]])?;
 //! let bodies = vec![
-//!     PathBody::carried(0, link.at(Pose::IDENTITY)),
-//!     PathBody::carried(1, link.at(Pose::IDENTITY)),
-//!     PathBody::standing(wall.at(Pose::IDENTITY)),
+//!     PathBody::carried_by(0, link.at(Pose::IDENTITY)),
+//!     PathBody::carried_by(1, link.at(Pose::IDENTITY)),
+//!     PathBody::at_rest(wall.at(Pose::IDENTITY)),
 //! ];
 //! let cast = PathCast::new(&arm, &path, bodies, vec![[0, 2], [1, 2]])?;
 //! let PathOutcome::Contact(contact) = cast.first_contact()? else { panic!("no contact") };
@@ -76,8 +76,10 @@ use colltrans_solid::{AsSolid, SolidPairSearch};
 pub use self::answer::{PathContact, PathOutcome};
 use self::chain::Chain;
 use self::link_pair::LinkPair;
-pub use self::mechanism::{Frame, Joint, JointPath, Mechanism, PathError, Place};
-pub use self::proof::{Cover, How, PathMeeting, PathProof, Step, Stretch};
+pub use self::mechanism::{Frame, Joint, JointPath, Mechanism, PathError, PathPlace};
+pub use self::proof::{
+    CoverStep, PathContactProof, PathCover, PathProof, PathProvenContact, PlaneStretch,
+};
 use self::search::{PathSearch, Stop};
 use self::shape::Shape;
 pub use self::verify::PathProofError;
@@ -95,12 +97,12 @@ pub struct PathBody<'a> {
 
 impl<'a> PathBody<'a> {
     /// Returns a body carried by a frame, with its pose in the frame.
-    pub fn carried(frame: usize, placed: impl Into<AnyPlaced<'a>>) -> Self {
+    pub fn carried_by(frame: usize, placed: impl Into<AnyPlaced<'a>>) -> Self {
         Self { frame: Some(frame), placed: placed.into() }
     }
 
     /// Returns a body that rests in the world.
-    pub fn standing(placed: impl Into<AnyPlaced<'a>>) -> Self {
+    pub fn at_rest(placed: impl Into<AnyPlaced<'a>>) -> Self {
         Self { frame: None, placed: placed.into() }
     }
 }
@@ -121,8 +123,9 @@ impl<'a> PathCast<'a> {
     ///
     /// # Errors
     /// Returns an error if
-    /// - a row does not have one value for each joint,
-    /// - a pair or a body refers to a body or a frame that does not exist,
+    /// - a row does not have one value in range for each joint,
+    /// - a body refers to a frame that does not exist,
+    /// - a pair does not refer to two different bodies that exist,
     /// - a body can move out of the accepted range,
     /// - a body of a pair with a solid is a point or a segment.
     pub fn new(
@@ -147,7 +150,7 @@ impl<'a> PathCast<'a> {
         for body in 0..count {
             let chain = cast.body_chain(body, &mechanism.frames_above(cast.frames[body]));
             if chain.size.is_nan() || chain.size > MAX_MAGNITUDE {
-                return Err(PathError::Far { body });
+                return Err(PathError::OutOfRange { body });
             }
         }
         for (k, pair) in cast.pairs.iter().enumerate() {
@@ -162,9 +165,9 @@ impl<'a> PathCast<'a> {
     /// to the gap.
     ///
     /// # Errors
-    /// Returns [`PathError::Keep`] if the gap is negative, not finite or out of range.
-    pub fn keeping(self, gap: f64) -> Result<Self, PathError> {
-        check_min_gap(gap).map_err(|_| PathError::Keep { gap })?;
+    /// Returns [`PathError::MinGap`] if the gap is negative, not finite or out of range.
+    pub fn with_min_gap(self, gap: f64) -> Result<Self, PathError> {
+        check_min_gap(gap).map_err(|_| PathError::MinGap { gap })?;
         Ok(Self { min_gap: gap, ..self })
     }
 
@@ -175,7 +178,7 @@ impl<'a> PathCast<'a> {
 
     /// Returns all pairs of bodies that joints move relative to each other and that are not part of the query. No
     /// answer covers them. Takes time quadratic in the number of bodies.
-    pub fn left_out(&self) -> Vec<[usize; 2]> {
+    pub fn unqueried_pairs(&self) -> Vec<[usize; 2]> {
         let moved_by = |frame: &Option<usize>| {
             let mut above = self.mechanism.frames_above(*frame);
             above.retain(|k| self.mechanism.frames()[*k].joint != Joint::Fixed);
@@ -191,7 +194,7 @@ impl<'a> PathCast<'a> {
     }
 
     /// Returns the minimum gap, in world units; 0 if none was set.
-    pub const fn keep(&self) -> f64 {
+    pub const fn min_gap(&self) -> f64 {
         self.min_gap
     }
 
@@ -201,7 +204,7 @@ impl<'a> PathCast<'a> {
     }
 
     /// Returns the bodies with the frames that carry them.
-    pub fn carried_bodies(&self) -> impl Iterator<Item = PathBody<'a>> {
+    pub fn bodies_with_frames(&self) -> impl Iterator<Item = PathBody<'a>> {
         let of = |(shape, frame): (&Shape<'a>, &Option<usize>)| PathBody {
             frame: *frame,
             placed: shape.placed,
@@ -220,7 +223,7 @@ impl<'a> PathCast<'a> {
     }
 
     /// Returns the pose of a body in the world, rounded.
-    pub fn pose(&self, body: usize, place: Place) -> Pose {
+    pub fn world_pose(&self, body: usize, place: PathPlace) -> Pose {
         let chain = self.body_chain(body, &self.mechanism.frames_above(self.frames[body]));
         chain.pose_and_rates(self.path, place.row, place.share).0
     }
@@ -229,7 +232,7 @@ impl<'a> PathCast<'a> {
     ///
     /// If the search between two bodies takes its maximum number of steps, the convex ones of them are converted to
     /// solids, and all pairs are searched again. If the new search does not decide the pair either, the other pairs are
-    /// still searched. The answer is then [`PathOutcome::Undecided`], unless another pair meets earlier.
+    /// still searched. The answer is then [`PathOutcome::Undecided`], unless another pair meets, or may meet, earlier.
     ///
     /// # Errors
     /// Returns an error if a body cannot be converted to a solid where a solid may contain it.
@@ -264,8 +267,8 @@ impl<'a> PathCast<'a> {
             let query =
                 |reason: QueryError| PathError::Query { pair: *pair, reason: reason.into() };
             let link_pair = self.link_pair(k);
-            let mut search = PathSearch::new(&link_pair, self.shapes_of(k), Place::START);
-            search.cover_pieces([0, 0], Place::START, Place::START);
+            let mut search = PathSearch::new(&link_pair, self.shapes_of(k), PathPlace::START);
+            search.cover_pieces([0, 0], PathPlace::START, PathPlace::START);
             let meets = matches!(search.stop, Some((_, Stop::Met(..))));
             if meets || is_nested_at_start(self, k).map_err(query)? {
                 found.push(*pair);
@@ -303,22 +306,26 @@ impl<'a> PathCast<'a> {
     /// Searches all pairs once, without conversions to solids.
     fn search_all_pairs(&self) -> Result<Searched, PathError> {
         let (mut proof, mut steps) = (PathProof::default(), MotionSteps::default());
-        let mut until = Place::at_row(self.path.last_row());
+        let mut until = PathPlace::at_row(self.path.last_row());
         let mut reached = until;
         let mut stopped: Option<(usize, Stop)> = None;
         // Pairs whose search took its maximum number of steps, and the place up to which each is separated.
-        let mut open: Vec<(usize, Place)> = Vec::new();
+        let mut open: Vec<(usize, PathPlace)> = Vec::new();
         for (k, pair) in self.pairs.iter().enumerate() {
             let link_pair = self.link_pair(k);
             let query =
                 |reason: QueryError| PathError::Query { pair: *pair, reason: reason.into() };
             if is_nested_at_start(self, k).map_err(query)? {
-                let meeting = PathMeeting { pair: k, place: Place::START, how: How::Inside };
+                let meeting = PathProvenContact {
+                    pair: k,
+                    place: PathPlace::START,
+                    how: PathContactProof::Inside,
+                };
                 let outcome = self.overlap_outcome(meeting, proof, steps);
                 return Ok(Searched { outcome, stalled: Vec::new() });
             }
             let mut search = PathSearch::new(&link_pair, self.shapes_of(k), until);
-            proof.covers.push(search.cover_pieces([0, 0], Place::START, until));
+            proof.covers.push(search.cover_pieces([0, 0], PathPlace::START, until));
             let is_open = matches!(search.stop, Some((_, Stop::Stalled)));
             if is_open {
                 open.push((k, search.reached));
@@ -345,8 +352,9 @@ impl<'a> PathCast<'a> {
         Ok(Searched { outcome, stalled })
     }
 
-    /// Checks a proof without a search, over all vertices. Returns the time up to which no two bodies are proven to
-    /// meet, and the time at which two are proven to meet. The latter is infinite if the proof claims no contact.
+    /// Checks a proof without a search, over all vertices. Returns the time up to which all pairs are proven not to
+    /// meet, and the time at which two bodies are proven to meet. The latter is infinite if the proof claims no
+    /// contact.
     ///
     /// # Errors
     /// Returns the first entry of the proof that does not hold.
@@ -391,15 +399,15 @@ impl<'a> PathCast<'a> {
     fn build_outcome(
         &self,
         stopped: Option<(usize, Stop)>,
-        reached: Place,
+        reached: PathPlace,
         mut proof: PathProof,
         steps: MotionSteps,
     ) -> PathOutcome {
         match stopped {
             None => PathOutcome::Free(MotionFree { proof, steps }),
             Some((pair, Stop::Met(place, how))) => {
-                let meeting = PathMeeting { pair, place, how };
-                if place == Place::START {
+                let meeting = PathProvenContact { pair, place, how };
+                if place == PathPlace::START {
                     return self.overlap_outcome(meeting, proof, steps);
                 }
                 proof.meeting = Some(meeting);
@@ -416,7 +424,7 @@ impl<'a> PathCast<'a> {
     fn undecided_outcome(
         &self,
         pair: usize,
-        place: Place,
+        place: PathPlace,
         stopped: Option<(usize, Stop)>,
         mut proof: PathProof,
         steps: MotionSteps,
@@ -424,7 +432,7 @@ impl<'a> PathCast<'a> {
         let mut upper = f64::INFINITY;
         if let Some((pair, Stop::Met(place, how))) = stopped {
             upper = self.path.time_bounds(place)[1];
-            proof.meeting = Some(PathMeeting { pair, place, how });
+            proof.meeting = Some(PathProvenContact { pair, place, how });
         }
         PathOutcome::Undecided(self.build_contact(pair, place, upper, proof, steps))
     }
@@ -432,22 +440,22 @@ impl<'a> PathCast<'a> {
     /// Builds the outcome for two bodies that overlap at the start. It states nothing about the other pairs.
     fn overlap_outcome(
         &self,
-        meeting: PathMeeting,
+        meeting: PathProvenContact,
         mut proof: PathProof,
         steps: MotionSteps,
     ) -> PathOutcome {
         let pair = meeting.pair;
-        proof.covers = vec![Cover::default(); self.pairs.len()];
+        proof.covers = vec![PathCover::default(); self.pairs.len()];
         proof.meeting = Some(meeting);
-        let upper = self.path.ends()[0];
-        PathOutcome::Overlapping(self.build_contact(pair, Place::START, upper, proof, steps))
+        let upper = self.path.time_range()[0];
+        PathOutcome::Overlapping(self.build_contact(pair, PathPlace::START, upper, proof, steps))
     }
 
     /// Builds the report of a contact of a pair at a place.
     fn build_contact(
         &self,
         pair: usize,
-        place: Place,
+        place: PathPlace,
         upper: f64,
         proof: PathProof,
         steps: MotionSteps,
@@ -459,7 +467,7 @@ impl<'a> PathCast<'a> {
         let meeting = proof.meeting.as_ref().filter(|meeting| meeting.pair == pair);
         let near = self.nearest_points(pair, place, meeting);
         let lower = self.path.time_bounds(place)[0];
-        let poses = bodies.map(|body| self.pose(body, place));
+        let poses = bodies.map(|body| self.world_pose(body, place));
         let points = near.map(|near| near.0.map(|point| world.transform_point(point)));
         let normal = near.and_then(|near| near.1).map(|normal| world.transform_vector(normal));
         let features = near.and_then(|near| near.2);
@@ -482,13 +490,15 @@ impl<'a> PathCast<'a> {
     fn nearest_points(
         &self,
         pair: usize,
-        place: Place,
-        meeting: Option<&PathMeeting>,
+        place: PathPlace,
+        meeting: Option<&PathProvenContact>,
     ) -> Option<NearestPoints> {
         let link_pair = self.link_pair(pair);
         let shapes = self.shapes_of(pair);
         let pieces = match meeting.map(|meeting| &meeting.how) {
-            Some(How::Pieces { pieces, .. } | How::Point { pieces, .. }) => *pieces,
+            Some(
+                PathContactProof::Pieces { pieces, .. } | PathContactProof::Point { pieces, .. },
+            ) => *pieces,
             _ if shapes.iter().all(|shape| shape.piece_count() == 1) => [0, 0],
             _ => return None,
         };
@@ -523,7 +533,7 @@ type NearestPoints =
     ([glam::DVec3; 2], Option<glam::DVec3>, Option<colltrans_convex::body::Features>);
 
 /// Checks whether one body of a pair contains the other one, or a part of it, at the start of the path. The surfaces of
-/// the bodies are assumed to be separated.
+/// the bodies are assumed to be separated. Returns `false` for two convex bodies.
 fn is_nested_at_start(cast: &PathCast, pair: usize) -> Result<bool, QueryError> {
     let shapes = cast.shapes_of(pair);
     if shapes.iter().all(|shape| matches!(shape.placed, ByKind::Convex(_))) {

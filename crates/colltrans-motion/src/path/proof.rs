@@ -1,7 +1,7 @@
 //! Proofs about paths of joints: planes between the bodies of each pair, and the proof of a contact.
 
-use super::super::proof::{Met, PlaneAt};
-use super::mechanism::Place;
+use super::super::proof::{ContactProof, TimedPlane};
+use super::mechanism::PathPlace;
 
 /// Proof of an answer: planes between the bodies of each pair, and a contact if two bodies meet.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -12,10 +12,13 @@ use super::mechanism::Place;
 )]
 pub struct PathProof {
     /// One cover for each pair, in the order of the query.
-    pub covers: Vec<Cover>,
+    pub covers: Vec<PathCover>,
     /// Proof that two bodies meet.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
-    pub meeting: Option<PathMeeting>,
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "colltrans_kernel::serialization::required_option")
+    )]
+    pub meeting: Option<PathProvenContact>,
     /// Numbers of the convex bodies that the proof converts to solids: those of a pair whose search as convex bodies
     /// took its maximum number of steps.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
@@ -29,9 +32,9 @@ pub struct PathProof {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
-pub struct Cover {
+pub struct PathCover {
     /// The steps in order.
-    pub steps: Vec<Step>,
+    pub steps: Vec<CoverStep>,
 }
 
 /// A step of a cover.
@@ -41,18 +44,18 @@ pub struct Cover {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
-pub enum Step {
+pub enum CoverStep {
     /// Planes between both pieces. Within a stretch, each plane is joined to the next one. The last plane of a stretch
     /// and the first plane of the next one prove all times between them by their gaps.
-    Planes(Vec<Stretch>),
+    Planes(Vec<PlaneStretch>),
     /// A cover for each part of one piece.
     Parts {
         /// The piece that is split: the first (0) or the second (1).
         which: usize,
         /// Maximum end of the covers.
-        until: Place,
+        until: PathPlace,
         /// One cover for each part.
-        covers: Vec<Cover>,
+        covers: Vec<PathCover>,
     },
 }
 
@@ -64,11 +67,11 @@ pub enum Step {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
-pub struct Stretch {
+pub struct PlaneStretch {
     /// Index of the row.
     pub row: usize,
     /// Planes in the order of time.
-    pub planes: Vec<PlaneAt>,
+    pub planes: Vec<TimedPlane>,
 }
 
 /// Proof that two bodies meet.
@@ -78,13 +81,13 @@ pub struct Stretch {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
-pub struct PathMeeting {
+pub struct PathProvenContact {
     /// Index of the pair in the query.
     pub pair: usize,
     /// Place of the contact on the path.
-    pub place: Place,
+    pub place: PathPlace,
     /// Proof for this place.
-    pub how: How,
+    pub how: PathContactProof,
 }
 
 /// Proof that two bodies meet at a place.
@@ -94,13 +97,13 @@ pub struct PathMeeting {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
-pub enum How {
+pub enum PathContactProof {
     /// Two pieces of the bodies meet.
     Pieces {
         /// Numbers of the pieces.
         pieces: [usize; 2],
         /// Proof that the pieces meet.
-        met: Met,
+        met: ContactProof,
     },
     /// A point is inside both solids, for facets that meet face to face.
     Point {
@@ -115,32 +118,34 @@ pub enum How {
 
 impl PathProof {
     /// Returns the number of planes.
-    pub fn planes(&self) -> usize {
-        self.covers.iter().map(Cover::plane_count).sum()
+    pub fn plane_count(&self) -> usize {
+        self.covers.iter().map(PathCover::plane_count).sum()
     }
 
     /// Checks whether the proof, if it holds, shows for all pairs that the bodies do not meet at the start of the path.
     #[cfg(feature = "json")]
     #[doc(hidden)]
-    pub fn is_of_the_beginning(&self) -> bool {
-        self.covers.iter().all(Cover::proves_start)
+    pub fn proves_start(&self) -> bool {
+        self.covers.iter().all(PathCover::proves_start)
     }
 }
 
-impl Cover {
+impl PathCover {
     /// Checks whether the cover, if it holds, shows that the pieces do not meet at its start.
     pub(super) fn proves_start(&self) -> bool {
         self.steps.iter().any(|step| match step {
-            Step::Planes(stretches) => !stretches.is_empty(),
-            Step::Parts { covers, .. } => covers.iter().all(Self::proves_start),
+            CoverStep::Planes(stretches) => !stretches.is_empty(),
+            CoverStep::Parts { covers, .. } => covers.iter().all(Self::proves_start),
         })
     }
 
     /// Returns the number of planes in the cover.
     fn plane_count(&self) -> usize {
-        let of = |step: &Step| match step {
-            Step::Planes(stretches) => stretches.iter().map(|stretch| stretch.planes.len()).sum(),
-            Step::Parts { covers, .. } => covers.iter().map(Self::plane_count).sum::<usize>(),
+        let of = |step: &CoverStep| match step {
+            CoverStep::Planes(stretches) => {
+                stretches.iter().map(|stretch| stretch.planes.len()).sum()
+            }
+            CoverStep::Parts { covers, .. } => covers.iter().map(Self::plane_count).sum::<usize>(),
         };
         self.steps.iter().map(of).sum()
     }

@@ -1,26 +1,26 @@
 //! Searches two bodies along a path, by their pieces.
 //!
 //! Boxes, which contain other pieces, are separated only where that is cheap: in steps that are not short compared with
-//! their size. Where they are not separated, the larger box is split for a while, and its parts are followed for that
-//! time, down to the pieces of the bodies themselves.
+//! their size. Where they are not separated, the larger one is split. Its parts are covered up to the next sampled
+//! place at which both boxes are separated again, down to the pieces of the bodies themselves.
 //!
 //! Invariant: no two points of the pieces meet up to the end of a cover. A cover ends at its requested end, or where
 //! two of the bodies' own pieces meet or may meet.
 
 use super::super::crossing_time::{ContactState, find_crossing_time};
 use super::super::curvature::HillClimbing;
-use super::super::proof::PlaneAt;
+use super::super::proof::TimedPlane;
 use super::super::relative_motion::RelativeMotion;
 use super::super::sample::ConvexSampler;
 use super::super::solid::inside::Guesses;
 use super::follow::{FollowEnd, PiecePair, PlanePath};
 use super::link_pair::LinkPair;
-use super::mechanism::Place;
-use super::proof::{Cover, How, Step};
+use super::mechanism::PathPlace;
+use super::proof::{CoverStep, PathContactProof, PathCover};
 use super::shape::Shape;
 use colltrans_convex::body::ConvexPolyhedron;
 use colltrans_convex::setting::TwoBodies;
-use colltrans_kernel::descent::{node_to_split, replaced};
+use colltrans_kernel::descent::{node_to_split, pair_with_node};
 use colltrans_solid::body::Solid;
 
 /// Minimum step of boxes, as a share of their size.
@@ -33,8 +33,8 @@ const MAX_PAIRS_AT_PLACE: usize = 1 << 14;
 #[derive(Debug)]
 pub(super) enum Stop {
     /// The bodies are proven to meet at a place.
-    Met(Place, How),
-    /// The bodies come nearer than rounding errors can decide.
+    Met(PathPlace, PathContactProof),
+    /// The bodies are so near that rounding errors hide whether they meet.
     Indeterminate,
     /// The search took its maximum number of steps.
     Stalled,
@@ -53,26 +53,26 @@ pub(super) struct PathSearch<'p> {
     pub(super) link_pair: &'p LinkPair<'p>,
     pub(super) shapes: [&'p Shape<'p>; 2],
     pub(super) sampler: ConvexSampler,
-    /// The first stop found, with its place. Later places are not searched.
-    pub(super) stop: Option<(Place, Stop)>,
+    /// The earliest stop found, with its place. Later places are not searched.
+    pub(super) stop: Option<(PathPlace, Stop)>,
     /// Place up to which the pieces of all stops are separated.
-    pub(super) reached: Place,
+    pub(super) reached: PathPlace,
 }
 
 impl<'p> PathSearch<'p> {
     pub(super) fn new(
         link_pair: &'p LinkPair<'p>,
         shapes: [&'p Shape<'p>; 2],
-        until: Place,
+        until: PathPlace,
     ) -> Self {
         Self { link_pair, shapes, sampler: ConvexSampler::default(), stop: None, reached: until }
     }
 
     /// Returns the first stop, replaced by a proven contact soon after it if there is one. Returns `None` if the search
     /// did not stop.
-    pub(super) fn with_proven_contact(&mut self) -> Option<(Place, Stop)> {
+    pub(super) fn with_proven_contact(&mut self) -> Option<(PathPlace, Stop)> {
         let (until, stop) = self.stop.take()?;
-        let Place { row, share } = self.reached.normalised();
+        let PathPlace { row, share } = self.reached.normalised();
         let known_contact = match &stop {
             Stop::Stalled => return Some((until, stop)),
             Stop::Met(place, ..) if place.row == row => Some(place.share),
@@ -82,16 +82,16 @@ impl<'p> PathSearch<'p> {
             return Some((until, stop));
         }
         let found = find_crossing_time(share, known_contact, 1.0, |share| {
-            self.contact_state(Place { row, share })
+            self.contact_state(PathPlace { row, share })
         });
         Some(found.map_or((until, stop), |(share, how)| {
-            let place = Place { row, share };
+            let place = PathPlace { row, share };
             (place, Stop::Met(place, how))
         }))
     }
 
     /// Returns the state of the bodies at one place.
-    fn contact_state(&mut self, place: Place) -> ContactState<How> {
+    fn contact_state(&mut self, place: PathPlace) -> ContactState<PathContactProof> {
         let (mut stack, mut count, mut state) = (vec![[0, 0]], 0, ContactState::Apart);
         let mut interior = InteriorGuesses::new(self, place);
         while let Some(numbers) = stack.pop() {
@@ -109,7 +109,7 @@ impl<'p> PathSearch<'p> {
             }
             let Some(which) = piece_to_split(self.shapes, numbers) else {
                 if let Some(met) = pieces.prove_contact(&mut self.sampler, place) {
-                    return ContactState::Met(How::Pieces { pieces: numbers, met });
+                    return ContactState::Met(PathContactProof::Pieces { pieces: numbers, met });
                 }
                 state = ContactState::Undecided;
                 continue;
@@ -118,7 +118,7 @@ impl<'p> PathSearch<'p> {
                 self.shapes[which]
                     .sub_pieces(numbers[which])
                     .into_iter()
-                    .map(|part| replaced(numbers, which, part)),
+                    .map(|part| pair_with_node(numbers, which, part)),
             );
         }
         match interior.and_then(|interior| interior.interior_point()) {
@@ -128,7 +128,12 @@ impl<'p> PathSearch<'p> {
     }
 
     /// Covers two pieces from a place to another one, or to the first stop.
-    pub(super) fn cover_pieces(&mut self, pieces: [usize; 2], from: Place, until: Place) -> Cover {
+    pub(super) fn cover_pieces(
+        &mut self,
+        pieces: [usize; 2],
+        from: PathPlace,
+        until: PathPlace,
+    ) -> PathCover {
         match piece_to_split(self.shapes, pieces) {
             Some(which) => self.cover_by_parts(pieces, which, from, until),
             None => self.cover_by_planes(pieces, from, until),
@@ -142,12 +147,17 @@ impl<'p> PathSearch<'p> {
     }
 
     /// Returns the earlier of a place and the first stop.
-    fn limited_to_stop(&self, until: Place) -> Place {
+    fn limited_to_stop(&self, until: PathPlace) -> PathPlace {
         self.stop.as_ref().map_or(until, |stop| until.earlier_of(stop.0))
     }
 
     /// Covers two of the bodies' own pieces by planes.
-    fn cover_by_planes(&mut self, numbers: [usize; 2], from: Place, until: Place) -> Cover {
+    fn cover_by_planes(
+        &mut self,
+        numbers: [usize; 2],
+        from: PathPlace,
+        until: PathPlace,
+    ) -> PathCover {
         // The nearest pairs of other pieces are not valid for these.
         self.sampler.discard_pairs();
         let (plane_path, follow_end) =
@@ -156,7 +166,7 @@ impl<'p> PathSearch<'p> {
         let stop = match follow_end {
             FollowEnd::Apart => None,
             FollowEnd::Met(place, met) => {
-                Some((place, Stop::Met(place, How::Pieces { pieces: numbers, met })))
+                Some((place, Stop::Met(place, PathContactProof::Pieces { pieces: numbers, met })))
             }
             FollowEnd::Indeterminate => Some((reached, Stop::Indeterminate)),
             FollowEnd::Stalled => Some((reached, Stop::Stalled)),
@@ -167,7 +177,7 @@ impl<'p> PathSearch<'p> {
             self.stop = Some((place, stop));
             self.reached = self.reached.earlier_of(reached);
         }
-        Cover { steps: vec![Step::Planes(plane_path.stretches)] }
+        PathCover { steps: vec![CoverStep::Planes(plane_path.stretches)] }
     }
 
     /// Covers two pieces by planes where possible, and otherwise by the parts of one of them.
@@ -175,9 +185,9 @@ impl<'p> PathSearch<'p> {
         &mut self,
         numbers: [usize; 2],
         which: usize,
-        from: Place,
-        until: Place,
-    ) -> Cover {
+        from: PathPlace,
+        until: PathPlace,
+    ) -> PathCover {
         let pieces = self.piece_pair(numbers);
         let size = pieces.pieces.iter().map(|piece| piece_extent(piece)).fold(0.0, f64::max);
         let (mut steps, mut reached_place) = (Vec::new(), from);
@@ -187,7 +197,7 @@ impl<'p> PathSearch<'p> {
             let plane_path = self.follow_coarsely(&pieces, size, reached_place, until);
             if let Some((place, _)) = plane_path.last_plane() {
                 reached_place = place.normalised();
-                steps.push(Step::Planes(plane_path.stretches));
+                steps.push(CoverStep::Planes(plane_path.stretches));
             }
             if reached_place >= until.normalised() && !steps.is_empty() {
                 break;
@@ -196,16 +206,16 @@ impl<'p> PathSearch<'p> {
             let parts = self.shapes[which].sub_pieces(numbers[which]);
             let covers = parts.into_iter().map(|part| {
                 let next = self.limited_to_stop(next);
-                self.cover_pieces(replaced(numbers, which, part), reached_place, next)
+                self.cover_pieces(pair_with_node(numbers, which, part), reached_place, next)
             });
             let covers = covers.collect();
-            steps.push(Step::Parts { which, until: next, covers });
+            steps.push(CoverStep::Parts { which, until: next, covers });
             reached_place = next.normalised();
             if reached_place >= self.limited_to_stop(until).normalised() {
                 break;
             }
         }
-        Cover { steps }
+        PathCover { steps }
     }
 
     /// Follows two pieces by gaps, in steps that are not short compared with them, or by two planes for such a step.
@@ -213,8 +223,8 @@ impl<'p> PathSearch<'p> {
         &mut self,
         pieces: &PiecePair,
         size: f64,
-        from: Place,
-        until: Place,
+        from: PathPlace,
+        until: PathPlace,
     ) -> PlanePath {
         let mut plane_path = PlanePath::default();
         let Some(plane) = pieces.plane_at(&mut self.sampler, from) else { return plane_path };
@@ -242,11 +252,16 @@ impl<'p> PathSearch<'p> {
 
     /// Returns planes at a place and at a later one in the same row that prove the time between them. Returns `None` if
     /// they do not.
-    fn two_planes(&mut self, pieces: &PiecePair, from: Place, to: f64) -> Option<[PlaneAt; 2]> {
+    fn two_planes(
+        &mut self,
+        pieces: &PiecePair,
+        from: PathPlace,
+        to: f64,
+    ) -> Option<[TimedPlane; 2]> {
         if to <= from.share {
             return None;
         }
-        let end = Place { row: from.row, share: to };
+        let end = PathPlace { row: from.row, share: to };
         let first = pieces.plane_at(&mut self.sampler, from)?;
         let last = pieces.plane_at(&mut self.sampler, end)?;
         let motion = pieces.link_pair.segment_motion(pieces.pieces, from.row, [from.share, to]);
@@ -261,9 +276,9 @@ impl<'p> PathSearch<'p> {
         &mut self,
         pieces: &PiecePair,
         size: f64,
-        from: Place,
-        until: Place,
-    ) -> Place {
+        from: PathPlace,
+        until: PathPlace,
+    ) -> PathPlace {
         let mut step = size;
         loop {
             let place = self.link_pair.place_within(from, until, step);
@@ -286,7 +301,7 @@ struct InteriorGuesses<'p> {
 
 impl<'p> InteriorGuesses<'p> {
     /// Prepares the guesses of a place. Returns `None` unless both bodies are solids and there is no minimum gap.
-    fn new(search: &PathSearch<'p>, place: Place) -> Option<Self> {
+    fn new(search: &PathSearch<'p>, place: PathPlace) -> Option<Self> {
         let (link_pair, shapes) = (search.link_pair, search.shapes);
         let solids = [shapes[0].solid()?, shapes[1].solid()?];
         let (bodies, off) = link_pair.place_solids(solids, place);
@@ -305,10 +320,10 @@ impl<'p> InteriorGuesses<'p> {
     }
 
     /// Returns the proof of a point inside both solids, or `None`.
-    fn interior_point(&self) -> Option<How> {
+    fn interior_point(&self) -> Option<PathContactProof> {
         let (facets, point) = self.guesses.interior_point(&self.bodies, self.off)?;
         let pieces = [0, 1].map(|k| self.shapes[k].facet_piece(facets[k]));
-        Some(How::Point { pieces, point: point.to_array() })
+        Some(PathContactProof::Point { pieces, point: point.to_array() })
     }
 }
 

@@ -90,7 +90,7 @@ impl<'a> Shape<'a> {
             None => Vec::new(),
             Some(node) if node.is_leaf() => node.facets().map(|f| nodes.len() + f).collect(),
             Some(node) => {
-                let first = number + node.skip as usize;
+                let first = number + node.child_offset as usize;
                 vec![first, first + 1]
             }
         }

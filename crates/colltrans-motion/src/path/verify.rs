@@ -7,12 +7,14 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use super::super::proof::PlaneAt;
+use super::super::proof::TimedPlane;
 use super::super::solid::inside;
 use super::super::verify::{PlaneListError, check_planes, proves_contact};
 use super::link_pair::LinkPair;
-use super::mechanism::Place;
-use super::proof::{Cover, How, PathMeeting, PathProof, Step, Stretch};
+use super::mechanism::PathPlace;
+use super::proof::{
+    CoverStep, PathContactProof, PathCover, PathProof, PathProvenContact, PlaneStretch,
+};
 use super::shape::Shape;
 use super::{PathCast, is_nested_at_start};
 use colltrans_convex::answer::CertificateError;
@@ -88,13 +90,13 @@ pub(super) fn verify(cast: &PathCast, proof: &PathProof) -> Result<[f64; 2], Pat
     if proof.covers.len() != pairs {
         return Err(PathProofError::Pairs { covers: proof.covers.len(), pairs });
     }
-    let end = Place::at_row(cast.path.last_row());
+    let end = PathPlace::at_row(cast.path.last_row());
     let mut reached = end;
     for (pair, cover) in proof.covers.iter().enumerate() {
         let link_pair = cast.link_pair(pair);
         let shapes = cast.shapes_of(pair);
         let check = CoverCheck { link_pair: &link_pair, shapes, pair };
-        let up_to = check.check_cover(cover, [0, 0], Place::START, end)?;
+        let up_to = check.check_cover(cover, [0, 0], PathPlace::START, end)?;
         if cover.proves_start() && is_nested_at_start(cast, pair).unwrap_or(true) {
             return Err(PathProofError::Inside { pair });
         }
@@ -104,7 +106,7 @@ pub(super) fn verify(cast: &PathCast, proof: &PathProof) -> Result<[f64; 2], Pat
     let Some(meeting) = &proof.meeting else {
         return Ok([lower, f64::INFINITY]);
     };
-    let PathMeeting { pair, place, .. } = *meeting;
+    let PathProvenContact { pair, place, .. } = *meeting;
     let fails = |reason| PathProofError::Meeting { pair, row: place.row, reason };
     if pair >= pairs || !cast.path.contains(place) || place < reached {
         return Err(fails(None));
@@ -114,8 +116,8 @@ pub(super) fn verify(cast: &PathCast, proof: &PathProof) -> Result<[f64; 2], Pat
 }
 
 /// Checks that two bodies meet at the claimed place.
-fn check_contact(cast: &PathCast, meeting: &PathMeeting) -> Result<(), PathProofError> {
-    let PathMeeting { pair, place, how } = meeting;
+fn check_contact(cast: &PathCast, meeting: &PathProvenContact) -> Result<(), PathProofError> {
+    let PathProvenContact { pair, place, how } = meeting;
     let (link_pair, shapes) = (cast.link_pair(*pair), cast.shapes_of(*pair));
     let fails = |reason| PathProofError::Meeting { pair: *pair, row: place.row, reason };
     let are_own = |pieces: &[usize; 2]| {
@@ -124,16 +126,18 @@ fn check_contact(cast: &PathCast, meeting: &PathMeeting) -> Result<(), PathProof
         })
     };
     let holds = match how {
-        How::Inside => *place == Place::START && is_nested_at_start(cast, *pair).unwrap_or(false),
-        How::Point { pieces, point } => {
+        PathContactProof::Inside => {
+            *place == PathPlace::START && is_nested_at_start(cast, *pair).unwrap_or(false)
+        }
+        PathContactProof::Point { pieces, point } => {
             are_own(pieces) && is_point_inside_both(&link_pair, shapes, *place, *point)
         }
-        How::Pieces { pieces, met } if are_own(pieces) => {
+        PathContactProof::Pieces { pieces, met } if are_own(pieces) => {
             let bodies = [shapes[0].piece(pieces[0]), shapes[1].piece(pieces[1])];
             let motion = link_pair.segment_motion(bodies, place.row, [place.share; 2]);
             proves_contact(&motion, place.share, met).map_err(|reason| fails(Some(reason)))?
         }
-        How::Pieces { .. } => false,
+        PathContactProof::Pieces { .. } => false,
     };
     if holds { Ok(()) } else { Err(fails(None)) }
 }
@@ -142,7 +146,7 @@ fn check_contact(cast: &PathCast, meeting: &PathMeeting) -> Result<(), PathProof
 fn is_point_inside_both(
     link_pair: &LinkPair,
     shapes: [&Shape; 2],
-    place: Place,
+    place: PathPlace,
     point: [f64; 3],
 ) -> bool {
     let [Some(p), Some(q)] = shapes.map(Shape::solid) else { return false };
@@ -161,20 +165,20 @@ impl CoverCheck<'_> {
     /// Checks a cover of two pieces. Returns the place up to which it proves that they do not meet, at most `until`.
     fn check_cover(
         &self,
-        cover: &Cover,
+        cover: &PathCover,
         pieces: [usize; 2],
-        from: Place,
-        until: Place,
-    ) -> Result<Place, PathProofError> {
+        from: PathPlace,
+        until: PathPlace,
+    ) -> Result<PathPlace, PathProofError> {
         let mut reached_place = from;
         for step in &cover.steps {
             match step {
-                Step::Planes(stretches) => {
+                CoverStep::Planes(stretches) => {
                     if let Some(place) = self.check_stretches(stretches, pieces, reached_place)? {
                         reached_place = place;
                     }
                 }
-                Step::Parts { which, until, covers } => {
+                CoverStep::Parts { which, until, covers } => {
                     let is_pair = *which < 2
                         && self.link_pair.path.contains(*until)
                         && *until >= reached_place;
@@ -210,23 +214,23 @@ impl CoverCheck<'_> {
     /// Checks planes of two pieces. Returns the place up to which they prove separation, or `None` if there are none.
     fn check_stretches(
         &self,
-        stretches: &[Stretch],
+        stretches: &[PlaneStretch],
         pieces: [usize; 2],
-        from: Place,
-    ) -> Result<Option<Place>, PathProofError> {
+        from: PathPlace,
+    ) -> Result<Option<PathPlace>, PathProofError> {
         let bodies = [self.shapes[0].piece(pieces[0]), self.shapes[1].piece(pieces[1])];
-        let mut before: Option<(Place, f64)> = None;
-        for Stretch { row, planes } in stretches {
+        let mut before: Option<(PathPlace, f64)> = None;
+        for PlaneStretch { row, planes } in stretches {
             let row = *row;
             let (Some(first), Some(last)) = (planes.first(), planes.last()) else {
                 return Err(self.order_error(row));
             };
-            let place = |plane: &PlaneAt| Place { row, share: plane.time };
+            let place = |plane: &TimedPlane| PathPlace { row, share: plane.time };
             let is_row = row <= self.link_pair.path.last_row() && first.time >= 0.0;
             if !is_row || planes.iter().any(|plane| plane.alone) {
                 return Err(self.order_error(row));
             }
-            if place(last).normalised() > Place::at_row(self.link_pair.path.last_row()) {
+            if place(last).normalised() > PathPlace::at_row(self.link_pair.path.last_row()) {
                 return Err(self.order_error(row));
             }
             let follows = match before {

@@ -33,9 +33,10 @@ impl MotionCast<'_, Solid> {
     /// [`Cast::clearance`](colltrans_convex::Cast::clearance). A translation has the same answer as there.
     ///
     /// The proof of its `shrunk` bounds is that of [`Self::certified_first_contact`]. Solids that overlap at the start
-    /// have no such proof with [`StartOverlap::Ignore`]. It is then proven that no two facets meet earlier that were
-    /// separated at the start. That facets which crossed do not count is a convention, and the time at which they are
-    /// separated is found by samples.
+    /// have no such proof with [`StartOverlap::Ignore`]. Two facets that are separated at the start are then proven not
+    /// to meet before the answer, except in contacts at which they do not face each other. Such contacts, and facets
+    /// that cross at the start, are ignored by convention. The time at which ignored facets are separated again is
+    /// found by samples.
     ///
     /// # Errors
     /// Returns the errors of [`Self::first_contact`], and [`QueryError::NotConverged`] if the search took its maximum
@@ -50,9 +51,9 @@ impl MotionCast<'_, Solid> {
     /// // A plate that is pressed 1/8 into a table is rotated out of it about an axis parallel to its edge.
     /// let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))?;
     /// let plate = ConvexPolyhedron::cuboid(DVec3::new(0.0, 0.0, -0.125), DVec3::new(1.0, 2.0, 1.0))?;
-    /// let out = Motion::turn(Pose::IDENTITY, DVec3::new(-1.0, 0.0, 0.0), DVec3::NEG_Y, 1.0)?;
-    /// let rest = Motion::still(Pose::IDENTITY);
-    /// let cast = MotionCast::between(plate.along(&out), table.along(&rest))?;
+    /// let out = Motion::rotation_about(Pose::IDENTITY, DVec3::new(-1.0, 0.0, 0.0), DVec3::NEG_Y, 1.0)?;
+    /// let rest = Motion::at_rest(Pose::IDENTITY);
+    /// let cast = MotionCast::between_any(plate.along(&out), table.along(&rest))?;
     /// let MotionClearance::Overlapping(found) = cast.clearance()? else { panic!() };
     /// assert!((found.least_tolerance.expect("there is one") - 0.125).abs() < 1e-9);
     /// assert!(cast.with_start_overlap(StartOverlap::Ignore).clearance()?.is_free());
@@ -60,12 +61,12 @@ impl MotionCast<'_, Solid> {
     /// ```
     pub fn clearance(&self) -> Result<MotionClearance<()>, QueryError> {
         let start = self.start_cast()?;
-        let scene = start.asked_of_something()?;
-        let place = overlap::find(&scene, &mut SolidSteps::default());
+        let scene = start.checked_query_scene()?;
+        let place = overlap::find_overlap(&scene, &mut SolidSteps::default());
         if let Some(place) = place
             && self.start_overlap == StartOverlap::Refuse
         {
-            let found = start.overlap_at(place, SolidSteps::default());
+            let found = start.start_overlap_at(place, SolidSteps::default());
             return Ok(MotionClearance::Overlapping(convert_overlap(&found)));
         }
         let mode = if place.is_some() {
@@ -109,7 +110,7 @@ impl MotionCast<'_, Solid> {
         let part = span.part_span(facets.each_ref(), [span.from, span.to]);
         let instant = part.instant_at(found.lower);
         let [f, g] = facets::placed_corners(&instant);
-        let near = triangle::nearest(&f, &g, instant.bodies.noise().point());
+        let near = triangle::nearest_points(&f, &g, instant.bodies.noise().point_error());
         // Change of the distance of the two points of contact due to the offset.
         let nominal = [0, 1].map(|k| {
             let solid = self.bodies()[k];
@@ -118,8 +119,8 @@ impl MotionCast<'_, Solid> {
         });
         let moved = |k: usize| {
             let [a, b] = [&nominal[k], &facets[k]];
-            triangle::mean(&a.corners, near.weights[k])
-                - triangle::mean(&b.corners, near.weights[k])
+            triangle::weighted_point(&a.corners, near.weights[k])
+                - triangle::weighted_point(&b.corners, near.weights[k])
         };
         let [p, q] =
             [instant.bodies.moving_matrix * moved(0), instant.bodies.fixed_matrix * moved(1)];

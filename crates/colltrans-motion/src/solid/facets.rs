@@ -16,10 +16,10 @@ use super::super::relative_motion::RelativeMotion;
 use super::super::sample::{Sample, Sampler, closing_speed};
 use super::super::search::{SpanEnd, SpanResult, prove_span};
 use super::super::span::{Instant, Span};
-use super::proof::FacetsMet;
+use super::proof::FacetContactProof;
 use super::tree::Facet;
 use colltrans_convex::answer::are_weights;
-use colltrans_solid::solve::nearest::triangle::{self, Corners, GAP, LENGTH};
+use colltrans_solid::solve::nearest::triangle::{self, Corners, GAP_NOISES, LENGTH_NOISES};
 
 /// Samples distances of two facets.
 #[derive(Debug, Clone, Default)]
@@ -35,7 +35,7 @@ pub(super) fn placed_corners<M>(at: &Instant<'_, M, Facet>) -> [Corners; 2] {
 }
 
 impl Sampler<Facet> for FacetSampler {
-    type Met = FacetsMet;
+    type Met = FacetContactProof;
     type SupportSearch = VertexScan;
     const SUPPORT_SEARCH: VertexScan = VertexScan;
 
@@ -45,18 +45,21 @@ impl Sampler<Facet> for FacetSampler {
     {
         self.steps.looks += 1;
         let at = motion.instant_at(time);
-        let noise = at.bodies.noise().point();
+        let noise = at.bodies.noise().point_error();
         let [f, g] = placed_corners(&at);
-        let found = triangle::nearest(&f, &g, noise);
-        let gap = found.gap - GAP * noise - motion.min_gap() - motion.position_error();
+        let found = triangle::nearest_points(&f, &g, noise);
+        let gap = found.gap - GAP_NOISES * noise - motion.min_gap() - motion.position_error();
         let [p, q] = [at.bodies.moving.corners, at.bodies.fixed.corners];
-        let points = [triangle::mean(&p, found.weights[0]), triangle::mean(&q, found.weights[1])];
+        let points = [
+            triangle::weighted_point(&p, found.weights[0]),
+            triangle::weighted_point(&q, found.weights[1]),
+        ];
         let (normal, floor) = (found.normal, 4.0 * noise + motion.position_error());
         let rate = if gap > 0.0 { closing_speed(motion, &at, points, normal) } else { 0.0 };
         Sample { at, normal, gap, rate, points, floor }
     }
 
-    fn prove_contact<'a, C>(&mut self, motion: &C, time: f64) -> Option<FacetsMet>
+    fn prove_contact<'a, C>(&mut self, motion: &C, time: f64) -> Option<FacetContactProof>
     where
         C: RelativeMotion<'a, Body = Facet>,
     {
@@ -64,13 +67,13 @@ impl Sampler<Facet> for FacetSampler {
         let at = motion.instant_at(time);
         if motion.min_gap() > 0.0 {
             let [f, g] = placed_corners(&at);
-            let weights = triangle::nearest(&f, &g, at.bodies.noise().point()).weights;
-            let met = FacetsMet::Near { weights: weights.map(|w| w.to_array()) };
+            let weights = triangle::nearest_points(&f, &g, at.bodies.noise().point_error()).weights;
+            let met = FacetContactProof::Near { weights: weights.map(|w| w.to_array()) };
             return is_contact_proven(motion, &at, met).then_some(met);
         }
         let edges = [true, false].into_iter().flat_map(|moving| (0..3).map(move |k| (moving, k)));
         edges
-            .map(|(moving, edge)| FacetsMet::Crossing { moving, edge })
+            .map(|(moving, edge)| FacetContactProof::Crossing { moving, edge })
             .find(|met| is_contact_proven(motion, &at, *met))
     }
 }
@@ -79,24 +82,24 @@ impl Sampler<Facet> for FacetSampler {
 pub(super) fn is_contact_proven<'a, C: RelativeMotion<'a, Body = Facet>>(
     motion: &C,
     at: &Instant<'a, C::Moved, Facet>,
-    met: FacetsMet,
+    met: FacetContactProof,
 ) -> bool {
-    let (noise, [f, g]) = (at.bodies.noise().point(), placed_corners(at));
+    let (noise, [f, g]) = (at.bodies.noise().point_error(), placed_corners(at));
     match met {
-        FacetsMet::Crossing { moving, edge } => {
+        FacetContactProof::Crossing { moving, edge } => {
             let (own, other) = if moving { (f, g) } else { (g, f) };
             let (k, off) = (edge as usize, noise + motion.position_error());
             k < 3
                 && motion.min_gap() == 0.0
                 && segment_crosses_triangle(own[k], own[(k + 1) % 3], other, off)
         }
-        FacetsMet::Near { weights } => {
-            let length = triangle::length(&f, &g, weights.map(DVec3::from_array));
+        FacetContactProof::Near { weights } => {
+            let length = triangle::weighted_distance(&f, &g, weights.map(DVec3::from_array));
             weights.iter().all(|weights| are_weights(&weights[..]))
-                && length + LENGTH * noise + motion.position_error() <= motion.min_gap()
+                && length + LENGTH_NOISES * noise + motion.position_error() <= motion.min_gap()
         }
         // These proofs are about whole solids, not about two facets.
-        FacetsMet::Inside { .. } | FacetsMet::Contained { .. } => false,
+        FacetContactProof::Inside { .. } | FacetContactProof::Contained { .. } => false,
     }
 }
 
@@ -122,8 +125,8 @@ fn volume_sign([x, y, z]: [DVec3; 3], e: f64) -> i32 {
     if value.abs() > error { value.signum() as i32 } else { 0 }
 }
 
-/// Number of intervals in which crossing facets are sampled for a time at which they are separated; and the number of
-/// bisections of that interval.
+/// Number of equal intervals at whose ends two facets are sampled until they are separated; and the number of
+/// bisections of the interval before the first sample at which they are.
 const SAMPLES: i32 = 8;
 const BISECTIONS: i32 = 40;
 
@@ -138,10 +141,10 @@ const MIN_COSINE: f64 = 1e-12;
 /// A contact that begins after two facets were separated.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LaterContact {
-    /// Time up to which they are separated, since they were last found to be.
+    /// Time up to which they are separated, from the last time on at which the search found them separated.
     pub(super) lower: f64,
     /// Time of a proven contact and the proof.
-    pub(super) met: Option<(f64, FacetsMet)>,
+    pub(super) met: Option<(f64, FacetContactProof)>,
 }
 
 /// Finds the first contact of two facets that begins within a span while they face each other. `sided` states which
@@ -179,7 +182,8 @@ pub(super) fn find_later_contact(
     None
 }
 
-/// Returns the first sampled time, from `from` on, at which two facets are separated. Returns `None` if there is none.
+/// Returns the first sampled time, from `from` on, at which two facets are separated, refined by bisection. Returns
+/// `None` if there is none.
 fn find_separation_from(span: &Span<Facet>, from: f64, sampler: &mut FacetSampler) -> Option<f64> {
     if from > span.to {
         return None;
@@ -198,8 +202,8 @@ fn find_separation_from(span: &Span<Facet>, from: f64, sampler: &mut FacetSample
     Some(high)
 }
 
-/// Checks whether each facet moves towards the outer side of the other one, as in a cast. Facets without a side always
-/// pass.
+/// Checks whether each facet that has an outer side moves, relative to the other one, along its own outward normal.
+/// Facets without an outer side always pass.
 fn face_each_other(
     span: &Span<Facet>,
     time: f64,
@@ -209,9 +213,10 @@ fn face_each_other(
     let at = span.instant_at(time);
     let [f, g] = placed_corners(&at);
     sampler.steps.looks += 1;
-    let weights = triangle::nearest(&f, &g, at.bodies.noise().point()).weights;
+    let weights = triangle::nearest_points(&f, &g, at.bodies.noise().point_error()).weights;
     let bodies = [at.bodies.moving.corners, at.bodies.fixed.corners];
-    let speed = |k: usize| span.point_velocity(&at, k, triangle::mean(&bodies[k], weights[k]));
+    let speed =
+        |k: usize| span.point_velocity(&at, k, triangle::weighted_point(&bodies[k], weights[k]));
     // Velocity of the moving facet relative to the fixed one.
     let relative_velocity = speed(0) - speed(1);
     let normal = |[a, b, c]: Corners| (b - a).cross(c - a);

@@ -5,18 +5,18 @@
 //! proves overlap.
 //!
 //! Two facets give a guess of such a point: halfway between facets that have passed each other, or slightly below both
-//! if they lie in one plane and face the same way. The point is fixed in the frame of the fixed body. It counts if
-//! every facet of both bodies is farther away than the error of computed places. The winding numbers are then those of
-//! the real bodies.
+//! if they lie in one plane and face the same way. The point is fixed in the frame of the fixed body. It counts if its
+//! winding number is positive in both bodies, and all their closed facets are farther away than [`ERROR_FACTOR`] times
+//! the error of computed places. The winding numbers are then those of the real bodies.
 
 use glam::DVec3;
 
-use super::proof::FacetsMet;
+use super::proof::FacetContactProof;
 use super::tree::SolidTree;
-use colltrans_convex::body::Hull;
+use colltrans_convex::body::VertexHull;
 use colltrans_convex::setting::TwoBodies;
-use colltrans_kernel::range::{is_in_exact_range, without_traces};
-use colltrans_solid::body::{Solid, crossing};
+use colltrans_kernel::range::{is_in_exact_range, with_tiny_components_zeroed};
+use colltrans_solid::body::{Solid, ray_crossing};
 use colltrans_solid::solve::nearest::triangle::{self, Corners};
 
 /// Minimum distance of facets from the point, as a multiple of the error of computed places: 2 for this error, 2 for
@@ -27,7 +27,7 @@ const ERROR_FACTOR: f64 = 4.0;
 const DEPTH_FACTOR: f64 = 2.0;
 
 /// A surface with closed parts, which can contain points.
-pub(crate) trait ClosedSurface: Hull {
+pub(crate) trait ClosedSurface: VertexHull {
     /// Returns the facets of the closed parts, in the frame of the body.
     fn closed_facets(&self) -> impl Iterator<Item = Corners>;
 }
@@ -105,7 +105,7 @@ pub(super) enum Contained {
     /// A point is inside, but by less than the error of computed places.
     Barely,
     /// A point is proven to be inside.
-    Met(FacetsMet),
+    Met(FacetContactProof),
 }
 
 /// Searches for a point of a body without area inside the other body. `off` is the error of computed places.
@@ -120,9 +120,9 @@ pub(super) fn find_contained_point(bodies: &TwoBodies<SolidTree>, off: f64) -> C
     let count = if facet[0] == facet[1] { 1 } else { TEST_WEIGHTS.len() };
     let mut found = Contained::None;
     for weights in &TEST_WEIGHTS[..count] {
-        let point = triangle::mean(&facet, DVec3::from_array(*weights));
+        let point = triangle::weighted_point(&facet, DVec3::from_array(*weights));
         if contains_point(bodies, moving, point, ERROR_FACTOR * off) {
-            return Contained::Met(FacetsMet::Contained { moving, weights: *weights });
+            return Contained::Met(FacetContactProof::Contained { moving, weights: *weights });
         }
         if contains_point(bodies, moving, point, 0.0) {
             found = Contained::Barely;
@@ -140,7 +140,7 @@ pub(super) fn is_point_inside(
     facet: &Corners,
     weights: [f64; 3],
 ) -> bool {
-    let point = triangle::mean(facet, DVec3::from_array(weights));
+    let point = triangle::weighted_point(facet, DVec3::from_array(weights));
     contains_point(bodies, moving, point, ERROR_FACTOR * off)
 }
 
@@ -150,7 +150,7 @@ fn contains_point(bodies: &TwoBodies<SolidTree>, moving: bool, point: DVec3, off
     let of_moving = |v: DVec3| bodies.moving_matrix * v;
     let of_fixed = |v: DVec3| bodies.fixed_matrix * v + bodies.offset;
     let there = if moving { of_moving(point) } else { of_fixed(point) };
-    is_in_exact_range(without_traces(there))
+    is_in_exact_range(with_tiny_components_zeroed(there))
         && if moving {
             surface_contains(bodies.fixed, there, off, of_fixed)
         } else {
@@ -192,8 +192,8 @@ pub(crate) fn is_inside_both<S: ClosedSurface>(
 ) -> bool {
     let off = ERROR_FACTOR * off;
     let there = bodies.fixed_matrix * point + bodies.offset;
-    is_in_exact_range(without_traces(point))
-        && is_in_exact_range(without_traces(there))
+    is_in_exact_range(with_tiny_components_zeroed(point))
+        && is_in_exact_range(with_tiny_components_zeroed(there))
         && surface_contains(bodies.moving, there, off, |v| bodies.moving_matrix * v)
         && surface_contains(bodies.fixed, point, off, |v| v)
 }
@@ -206,13 +206,13 @@ fn surface_contains(
     off: f64,
     place: impl Fn(DVec3) -> DVec3,
 ) -> bool {
-    let (point, mut winding) = (without_traces(point), 0);
+    let (point, mut winding) = (with_tiny_components_zeroed(point), 0);
     for facet in surface.closed_facets() {
-        let corners = facet.map(|v| without_traces(place(v)));
+        let corners = facet.map(|v| with_tiny_components_zeroed(place(v)));
         if !is_facet_beyond(corners.map(|v| v - point), off) {
             return false;
         }
-        winding += crossing(point, corners);
+        winding += ray_crossing(point, corners);
     }
     winding > 0
 }

@@ -8,7 +8,7 @@ use super::super::crossing_time::ContactState;
 use super::super::sample::Sampler;
 use super::facets::{FacetSampler, placed_corners};
 use super::inside::{Contained, Guesses, find_contained_point};
-use super::proof::FacetsMet;
+use super::proof::FacetContactProof;
 use super::search::{find_separating_plane, split_larger_node};
 use super::tree::NodeContent;
 use super::window::{PlaneName, SpanFrame, TreePart};
@@ -18,13 +18,13 @@ pub(super) fn contact_state_at(
     frame: &SpanFrame,
     time: f64,
     sampler: &mut FacetSampler,
-) -> ContactState<([u32; 2], FacetsMet)> {
+) -> ContactState<([u32; 2], FacetContactProof)> {
     let trees = [frame.span.body(0), frame.span.body(1)];
     let snap = frame.snapshot_at(time);
     let mut state = ContactState::Apart;
     let (mut stack, mut guesses) = (vec![[0, 0]], Guesses::default());
     let bodies = frame.span.instant_at(time).bodies;
-    let off = bodies.noise().point() + frame.span.error;
+    let off = bodies.noise().point_error() + frame.span.error;
     while let Some(at) = stack.pop() {
         let parts = [0, 1].map(|k| TreePart::at_node(trees[k], at[k]));
         let window = frame.window([&snap, &snap], parts.each_ref());
@@ -63,7 +63,7 @@ pub(super) fn contact_state_at(
     if let ContactState::Undecided = state
         && let Some((pair, point)) = guesses.interior_point(&bodies, off)
     {
-        return ContactState::Met((pair, FacetsMet::Inside { point: point.to_array() }));
+        return ContactState::Met((pair, FacetContactProof::Inside { point: point.to_array() }));
     }
     state
 }

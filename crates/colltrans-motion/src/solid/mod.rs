@@ -24,10 +24,10 @@ use glam::DVec3;
 use self::facets::FacetSampler;
 use self::meeting::contact_state_at;
 use self::proof::RecordedProof;
-pub use self::proof::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, SpanProof};
+pub use self::proof::{FacetContact, FacetContactProof, MotionCover, SolidMotionProof, SpanProof};
 use self::search::{EarliestContact, SearchMode, TreeSearch};
 #[cfg(feature = "json")]
-pub use self::tree::Parts;
+pub use self::tree::ProofFacets;
 use self::tree::SolidTree;
 use self::window::SpanFrame;
 use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps};
@@ -43,9 +43,9 @@ use colltrans_solid::SolidScene;
 use colltrans_solid::SolidSteps;
 use colltrans_solid::body::{AsSolid, Solid};
 use colltrans_solid::cast::{SolidOptions, StartProof};
-use colltrans_solid::solve::nearest::{Spot, points_of, triangle};
+use colltrans_solid::solve::nearest::{NearestPoints, triangle, weighted_points};
 use colltrans_solid::solve::overlap;
-use colltrans_solid::solve::scene::Scene;
+use colltrans_solid::solve::scene::PairFrame;
 
 /// Maximum number of attempts to prove the time up to a contact, each with a slightly earlier end.
 const MAX_PROOF_ATTEMPTS: i32 = 40;
@@ -56,7 +56,7 @@ impl<'a> MotionCast<'a, Solid> {
     /// Builds the cast of two bodies as solids. Each of them is a solid or a convex polyhedron.
     ///
     /// A point or a segment is accepted. Its contact with a closed solid has an upper bound: a time at which one of its
-    /// points is inside ([`FacetsMet::Contained`]), or at which a segment passes through a facet. The contact of a
+    /// points is inside ([`FacetContactProof::Contained`]), or at which a segment passes through a facet. The contact of a
     /// point that passes through an open shell has no upper bound, and is [`MotionOutcome::Grazing`].
     ///
     /// # Errors
@@ -71,14 +71,14 @@ impl<'a> MotionCast<'a, Solid> {
     /// let post = ConvexPolyhedron::cuboid(DVec3::splat(-0.1), DVec3::splat(0.3))?;
     /// let far = ConvexPolyhedron::cuboid(DVec3::splat(5.0), DVec3::splat(6.0))?;
     /// let scene = Solid::from_pieces([&post, &far])?;
-    /// let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::PI)?;
-    /// let there = Motion::still(Pose::from_translation(DVec3::Y * 1.5)?);
-    /// let cast = MotionCast::between(bar.along(&swing), scene.along(&there))?;
+    /// let swing = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::PI)?;
+    /// let there = Motion::at_rest(Pose::from_translation(DVec3::Y * 1.5)?);
+    /// let cast = MotionCast::between_any(bar.along(&swing), scene.along(&there))?;
     /// let MotionOutcome::Contact(contact) = cast.first_contact()? else { panic!("no contact") };
     /// assert!(contact.lower < 0.5 && contact.upper - contact.lower < 1e-11);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn between<A: AsSolid, B: AsSolid>(
+    pub fn between_any<A: AsSolid, B: AsSolid>(
         moving: Moving<'a, A>,
         fixed: Moving<'a, B>,
     ) -> Result<Self, QueryError> {
@@ -93,8 +93,8 @@ impl<'a> MotionCast<'a, Solid> {
     /// solids falls to the gap.
     ///
     /// # Errors
-    /// Returns [`QueryError::Keep`] if the gap is negative, not finite or out of range.
-    pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
+    /// Returns [`QueryError::MinGap`] if the gap is negative, not finite or out of range.
+    pub fn with_min_gap(self, gap: f64) -> Result<Self, QueryError> {
         check_min_gap(gap)?;
         Ok(Self { min_gap: gap, ..self })
     }
@@ -105,7 +105,7 @@ impl<'a> MotionCast<'a, Solid> {
     ///
     /// # Errors
     /// Returns an error if the length is negative or not finite, or if it leaves nothing of a closed solid.
-    pub fn tolerating(self, tolerance: f64) -> Result<Self, QueryError> {
+    pub fn with_tolerance(self, tolerance: f64) -> Result<Self, QueryError> {
         let cast = Self { tolerance: Some(tolerance), ..self };
         cast.start_cast().map(|_| cast)
     }
@@ -119,11 +119,14 @@ impl<'a> MotionCast<'a, Solid> {
     /// [`Self::certified_first_contact`].
     ///
     /// # Errors
-    /// Returns an error if the default tolerance leaves nothing of a thin solid.
+    /// Returns an error if no tolerance was set, and the default leaves nothing of a thin solid or exceeds the size of
+    /// the bodies ([`QueryError::PositionError`]).
     pub fn first_contact(&self) -> Result<MotionOutcome<()>, QueryError> {
         let tolerance = self.tolerance();
         let (start, mut steps) = (self.start_cast()?, MotionSteps::default());
-        if overlap::find(&start.asked_of_something()?, &mut SolidSteps::default()).is_some() {
+        if overlap::find_overlap(&start.checked_query_scene()?, &mut SolidSteps::default())
+            .is_some()
+        {
             return Ok(MotionOutcome::Overlapping(self.overlap_contact((), steps)));
         }
         let trees = self.shrunk_trees(tolerance);
@@ -145,7 +148,7 @@ impl<'a> MotionCast<'a, Solid> {
     pub fn certified_first_contact(&self) -> Result<MotionOutcome<SolidMotionProof>, QueryError> {
         let tolerance = self.tolerance();
         let cast = self.start_cast()?;
-        let start = cast.prove_start(&cast.asked_of_something()?, &mut SolidSteps::default());
+        let start = cast.prove_start(&cast.checked_query_scene()?, &mut SolidSteps::default());
         let mut proof = SolidMotionProof { tolerance, start, spans: Vec::new(), meeting: None };
         let mut steps = MotionSteps::default();
         if matches!(proof.start, StartProof::Overlapping(_)) {
@@ -185,17 +188,17 @@ impl<'a> MotionCast<'a, Solid> {
         if self.tolerance.is_none() {
             check_accuracy(bodies, self.tolerance())?;
         }
-        let [p, q] = self.motions().map(|motion| motion.pieces()[0].start);
+        let [p, q] = self.motions().map(|motion| motion.pieces()[0].start_pose);
         let options =
-            SolidOptions::default().with_tolerance(self.tolerance()).with_keep(self.min_gap);
+            SolidOptions::default().with_tolerance(self.tolerance()).with_min_gap(self.min_gap);
         Cast::new(bodies[0].at(p), bodies[1].at(q), DVec3::Z)?.with_options(options)
     }
 
     /// Returns the facets and the trees that the entries of a proof refer to.
     #[cfg(feature = "json")]
     #[doc(hidden)]
-    pub fn parts(&self) -> [Parts; 2] {
-        self.shrunk_trees(self.tolerance()).map(|tree| Parts::from_tree(&tree))
+    pub fn proof_facets(&self) -> [ProofFacets; 2] {
+        self.shrunk_trees(self.tolerance()).map(|tree| ProofFacets::from_tree(&tree))
     }
 
     /// Returns the tolerance that was set; `None` for the default.
@@ -228,10 +231,10 @@ impl<'a> MotionCast<'a, Solid> {
     }
 
     /// Returns the frame of the nominal solids at a time. Returns `None` if it is out of range.
-    fn nominal_frame(&self, span: &Span<SolidTree>, time: f64) -> Option<Scene<'a>> {
-        let bodies = span.instant_at(time).bodies.holding(self.bodies());
-        let setting = Setting::of(bodies, DVec3::Z).ok()?;
-        Some(Scene::new(&setting, [0.0; 2], self.min_gap))
+    fn nominal_frame(&self, span: &Span<SolidTree>, time: f64) -> Option<PairFrame<'a>> {
+        let bodies = span.instant_at(time).bodies.with_bodies(self.bodies());
+        let setting = Setting::from_bodies(bodies, DVec3::Z).ok()?;
+        Some(PairFrame::new(&setting, [0.0; 2], self.min_gap))
     }
 
     /// Builds the outcome for solids that meet, or may meet.
@@ -240,24 +243,26 @@ impl<'a> MotionCast<'a, Solid> {
         span: &Span<SolidTree>,
         found: &EarliestContact,
         steps: MotionSteps,
-        proof: impl FnOnce(Option<FacetsMeeting>) -> P,
+        proof: impl FnOnce(Option<FacetContact>) -> P,
     ) -> MotionOutcome<P> {
-        let meeting =
-            found.met.map(|(time, triangles, met)| FacetsMeeting { time, triangles, met });
+        let meeting = found.met.map(|(time, triangles, met)| FacetContact { time, triangles, met });
         let (lower, upper) = (found.lower, meeting.map_or(f64::INFINITY, |meeting| meeting.time));
         let bodies = span.instant_at(lower).bodies;
         let [p, q] = [bodies.moving_matrix, bodies.fixed_matrix];
-        let poses =
-            [0, 1].map(|k| colltrans_convex::Pose::checked([p, q][k], bodies.translations[k]));
+        let poses = [0, 1].map(|k| {
+            colltrans_convex::Pose::from_checked_entries([p, q][k], bodies.translations[k])
+        });
         // The bounds do not depend on the rest. The facets are those of the shrunk solids, and so is the normal.
         let [f, g] = [0, 1].map(|k| span.body(k).facet(found.triangles[k]));
         let at = span.part_span([&f, &g], [span.from, span.to]).instant_at(lower);
         let [f, g] = facets::placed_corners(&at);
-        let nearest = triangle::nearest(&f, &g, at.bodies.noise().point());
-        let (spot, scene) =
-            (Spot { triangles: found.triangles, nearest }, self.nominal_frame(span, lower));
+        let nearest = triangle::nearest_points(&f, &g, at.bodies.noise().point_error());
+        let (spot, scene) = (
+            NearestPoints { triangles: found.triangles, nearest },
+            self.nominal_frame(span, lower),
+        );
         let points = scene.as_ref().map(|scene| {
-            points_of(scene, spot.triangles, nearest.weights)
+            weighted_points(scene, spot.triangles, nearest.weights)
                 .map(|point| point + bodies.translations[0])
         });
         let is_apart = nearest.gap > 0.0;
@@ -279,7 +284,7 @@ impl<'a> MotionCast<'a, Solid> {
 
     /// Builds the report of solids that overlap at the start.
     fn overlap_contact<P>(&self, proof: P, steps: MotionSteps) -> MotionContact<P> {
-        let poses = self.motions().map(|motion| motion.pieces()[0].start);
+        let poses = self.motions().map(|motion| motion.pieces()[0].start_pose);
         let (points, normal, features) = (None, None, None);
         MotionContact { lower: 0.0, upper: 0.0, poses, points, normal, features, proof, steps }
     }

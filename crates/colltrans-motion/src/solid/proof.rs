@@ -4,7 +4,7 @@
 //! the whole span. The time or one of the parts is split, or the parts are separated throughout, by a named plane or by
 //! a list of planes. The complete list covers all pairs of facets at all times.
 
-use super::super::proof::PlaneAt;
+use super::super::proof::TimedPlane;
 use super::window::PlaneName;
 use colltrans_solid::cast::StartProof;
 
@@ -23,8 +23,11 @@ pub struct SolidMotionProof {
     /// A proof for each span in which both bodies rotate at a constant rate, up to the one with the contact.
     pub spans: Vec<SpanProof>,
     /// Proof that the solids meet at a time.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
-    pub meeting: Option<FacetsMeeting>,
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "colltrans_kernel::serialization::required_option")
+    )]
+    pub meeting: Option<FacetContact>,
 }
 
 /// Proof that no facets meet from the start of a span up to a time.
@@ -40,7 +43,7 @@ pub struct SpanProof {
     /// Entries for all pairs of facets at all times.
     pub cover: MotionCover,
     /// Planes for each entry that has a list, each joined to the next one.
-    pub lists: Vec<Vec<PlaneAt>>,
+    pub lists: Vec<Vec<TimedPlane>>,
 }
 
 /// Proof that two facets meet at a time.
@@ -50,13 +53,13 @@ pub struct SpanProof {
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
-pub struct FacetsMeeting {
+pub struct FacetContact {
     /// Time of the contact.
     pub time: f64,
     /// Indices of the facets in [`Solid::triangles`](colltrans_solid::Solid::triangles).
     pub triangles: [u32; 2],
     /// Proof for this time.
-    pub met: FacetsMet,
+    pub met: FacetContactProof,
 }
 
 /// Proof that two facets, or their solids, meet.
@@ -66,7 +69,7 @@ pub struct FacetsMeeting {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
-pub enum FacetsMet {
+pub enum FacetContactProof {
     /// An edge of one facet passes through the other one, by more than the error of computed places.
     Crossing {
         /// Whether the edge belongs to the facet of the moving body.
@@ -141,7 +144,7 @@ pub(super) enum Entry {
 #[derive(Debug, Clone, Default)]
 pub(super) struct RecordedProof {
     pub(super) entries: Vec<Entry>,
-    pub(super) lists: Vec<Vec<PlaneAt>>,
+    pub(super) lists: Vec<Vec<TimedPlane>>,
 }
 
 impl SpanProof {

@@ -1,8 +1,8 @@
 //! Searches both trees and time for the first contact of two solids, earlier times first.
 //!
 //! The open entries are a stack of pairs of parts, each with an interval. A pair that no plane separates throughout its
-//! interval is split. Its time is halved if the parts rotate far or move farther than their size; otherwise the larger
-//! part is split. Two remaining facets are searched like two convex bodies.
+//! interval is split. Its time is halved if the parts rotate far or move farther than a multiple of their size;
+//! otherwise the larger part is split. Two remaining facets are searched like two convex bodies.
 //!
 //! Invariant: every pair of facets is separated up to the end of the span, or up to the earliest contact found so far,
 //! except for the open entries. Later times are not searched.
@@ -10,10 +10,10 @@
 use super::super::answer::MotionSteps;
 use super::super::search::{SpanEnd, SpanResult, prove_span};
 use super::facets::{FacetSampler, LaterContact, find_later_contact};
-use super::proof::{Entry, FacetsMet, RecordedProof, interval_middle};
+use super::proof::{Entry, FacetContactProof, RecordedProof, interval_middle};
 use super::tree::{BoxNode, NodeContent, SolidTree};
 use super::window::{PlaneName, Snapshot, SpanFrame, TreePart, Window};
-use colltrans_kernel::descent::{node_to_split, replaced};
+use colltrans_kernel::descent::{node_to_split, pair_with_node};
 
 /// Angle in radians above which an interval is halved.
 const MAX_TURN: f64 = 0.7;
@@ -58,7 +58,7 @@ pub(super) struct EarliestContact {
     /// Whether the search between these two facets took its maximum number of steps.
     pub(super) is_open: bool,
     /// Time of a proven contact, its facets and the proof.
-    pub(super) met: Option<(f64, [u32; 2], FacetsMet)>,
+    pub(super) met: Option<(f64, [u32; 2], FacetContactProof)>,
 }
 
 /// Purpose of a search.
@@ -252,7 +252,7 @@ pub(super) fn split_larger_node(at: [u32; 2], nodes: [&BoxNode; 2]) -> Option<(u
     let are_facets = nodes.map(|node| matches!(node.content, NodeContent::Facet(_)));
     let which = node_to_split(are_facets, |k| nodes[k].half.length())?;
     let NodeContent::Children(first) = nodes[which].content else { return None };
-    Some((which as u8, [first, first + 1].map(|part| replaced(at, which, part))))
+    Some((which as u8, [first, first + 1].map(|part| pair_with_node(at, which, part))))
 }
 
 /// Returns a plane that separates two parts throughout an interval, or `None`. The plane that separated the last pair

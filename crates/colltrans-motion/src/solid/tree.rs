@@ -8,8 +8,8 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 
-use colltrans_convex::body::{Aabb, Hull};
-use colltrans_solid::body::{Solid, displace};
+use colltrans_convex::body::{Aabb, VertexHull};
+use colltrans_solid::body::{Solid, offset_vertex};
 
 /// Relative error of middle and half extents, which is added to the half extents.
 const EXTENT_ERROR: f64 = 4.0 * f64::EPSILON;
@@ -55,9 +55,9 @@ impl Facet {
     }
 }
 
-impl Hull for Facet {
+impl VertexHull for Facet {
     #[inline]
-    fn corners(&self) -> &[DVec3] {
+    fn hull_vertices(&self) -> &[DVec3] {
         &self.corners
     }
 
@@ -67,8 +67,8 @@ impl Hull for Facet {
     }
 }
 
-impl Hull for SolidTree<'_> {
-    fn corners(&self) -> &[DVec3] {
+impl VertexHull for SolidTree<'_> {
+    fn hull_vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
@@ -83,8 +83,9 @@ impl<'a> SolidTree<'a> {
         let vertices = if amount == 0.0 || !solid.has_offset() {
             Cow::Borrowed(solid.vertices())
         } else {
-            let field = &solid.shrinking().field;
-            let moved = solid.vertices().iter().zip(field).map(|(v, x)| displace(*v, *x, amount));
+            let field = &solid.offset_field().displacements;
+            let moved =
+                solid.vertices().iter().zip(field).map(|(v, x)| offset_vertex(*v, *x, amount));
             Cow::Owned(moved.collect())
         };
         let reach = vertices.iter().map(|v| v.length()).fold(0.0, f64::max).next_up();
@@ -132,7 +133,7 @@ impl<'a> SolidTree<'a> {
             let parts = match part {
                 NodeSource::Node(k) if own[k].is_leaf() => NodeSource::split_range(own[k].facets()),
                 NodeSource::Node(k) => {
-                    let first = k + own[k].skip as usize;
+                    let first = k + own[k].child_offset as usize;
                     Some([NodeSource::Node(first), NodeSource::Node(first + 1)])
                 }
                 NodeSource::Facets(first, end) => NodeSource::split_range(first..end),
@@ -150,9 +151,9 @@ impl<'a> SolidTree<'a> {
         let mut boxes = vec![Aabb::EMPTY; nodes.len()];
         for at in (0..nodes.len()).rev() {
             boxes[at] = match nodes[at].content {
-                NodeContent::Facet(triangle) => Aabb::of_points(self.facet(triangle).corners),
+                NodeContent::Facet(triangle) => Aabb::from_points(self.facet(triangle).corners),
                 NodeContent::Children(first) => {
-                    boxes[first as usize].join(&boxes[first as usize + 1])
+                    boxes[first as usize].union(&boxes[first as usize + 1])
                 }
             };
             let Aabb { low, high } = boxes[at];
@@ -196,7 +197,7 @@ impl NodeSource {
 #[cfg(feature = "json")]
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Parts {
+pub struct ProofFacets {
     /// Number of each facet in the input file.
     numbers: Vec<colltrans_convex::body::InputFacet>,
     corners: Vec<[[f64; 3]; 3]>,
@@ -205,7 +206,7 @@ pub struct Parts {
 }
 
 #[cfg(feature = "json")]
-impl Parts {
+impl ProofFacets {
     pub(super) fn from_tree(tree: &SolidTree) -> Self {
         let numbers = tree.solid.facet_indices().to_vec();
         let count = tree.solid.triangles().len() as u32;

@@ -9,7 +9,9 @@ use super::super::span::{Span, split_into_spans};
 use super::super::verify::{MotionProofError, check_planes};
 use super::facets;
 use super::inside;
-use super::proof::{Entry, FacetsMeeting, FacetsMet, SolidMotionProof, SpanProof, interval_middle};
+use super::proof::{
+    Entry, FacetContact, FacetContactProof, SolidMotionProof, SpanProof, interval_middle,
+};
 use super::tree::{NodeContent, SolidTree};
 use super::window::{Snapshot, SpanFrame, TreePart};
 use crate::MotionCast;
@@ -26,10 +28,10 @@ pub(super) fn verify(
 ) -> Result<[f64; 2], MotionProofError> {
     let (claimed, asked) = (proof.tolerance, cast.tolerance());
     if claimed != asked {
-        return Err(MotionProofError::Tolerance { claimed, asked });
+        return Err(MotionProofError::Tolerance { claimed, requested: asked });
     }
     let start = cast.start_cast().ok();
-    let scene = start.as_ref().and_then(|start| Some((start, start.asked_of_something().ok()?)));
+    let scene = start.as_ref().and_then(|start| Some((start, start.checked_query_scene().ok()?)));
     let Some((start, scene)) = scene else { return Err(MotionProofError::Start) };
     if matches!(proof.start, StartProof::Assumed)
         || start.verify_start(&scene, &proof.start).is_err()
@@ -53,7 +55,7 @@ pub(super) fn verify(
         reached = part.until;
     }
     let Some(meeting) = &proof.meeting else { return Ok([reached, f64::INFINITY]) };
-    let FacetsMeeting { time, .. } = *meeting;
+    let FacetContact { time, .. } = *meeting;
     let span = all.get(proof.spans.len().wrapping_sub(1));
     let meets = span.is_some_and(|span| time >= reached && is_contact_proven(span, meeting));
     if meets { Ok([reached, time]) } else { Err(MotionProofError::Meeting { time, reason: None }) }
@@ -115,7 +117,7 @@ fn is_separated_by_list(
     span: &Span<SolidTree>,
     parts: [&TreePart; 2],
     ends: &[Snapshot; 2],
-    planes: Option<&Vec<super::super::PlaneAt>>,
+    planes: Option<&Vec<super::super::TimedPlane>>,
 ) -> bool {
     let [Some(f), Some(g)] = parts.map(TreePart::facet) else { return false };
     let Some(planes) = planes else { return false };
@@ -128,27 +130,27 @@ fn is_separated_by_list(
 /// Checks whether the facets or the solids meet at the claimed time.
 fn is_contact_proven(
     span: &Span<SolidTree>,
-    FacetsMeeting { time, triangles, met }: &FacetsMeeting,
+    FacetContact { time, triangles, met }: &FacetContact,
 ) -> bool {
     let is_facet = |k: usize| (triangles[k] as usize) < span.body(k).solid.triangles().len();
     if !(is_facet(0) && is_facet(1) && (span.from..=span.to).contains(time)) {
         return false;
     }
     let bodies = span.instant_at(*time).bodies;
-    let off = bodies.noise().point() + span.error;
+    let off = bodies.noise().point_error() + span.error;
     match *met {
-        FacetsMet::Inside { point } => {
+        FacetContactProof::Inside { point } => {
             return span.min_gap == 0.0
                 && inside::is_inside_both(&bodies, off, DVec3::from_array(point));
         }
-        FacetsMet::Contained { moving, weights } => {
+        FacetContactProof::Contained { moving, weights } => {
             let k = usize::from(!moving);
             let facet = span.body(k).facet(triangles[k]).corners;
             return span.min_gap == 0.0
                 && are_weights(&weights)
                 && inside::is_point_inside(&bodies, off, moving, &facet, weights);
         }
-        FacetsMet::Crossing { .. } | FacetsMet::Near { .. } => {}
+        FacetContactProof::Crossing { .. } | FacetContactProof::Near { .. } => {}
     }
     let [f, g] = [0, 1].map(|k| span.body(k).facet(triangles[k]));
     let part = span.part_span([&f, &g], [span.from, span.to]);

@@ -15,8 +15,8 @@ use super::super::arc;
 use super::super::curvature::{ROOT_MARGIN, max_provable_curvature, perpendicular_part};
 use super::super::span::Span;
 use super::tree::{BoxNode, Facet, NodeContent, SolidTree};
-use colltrans_convex::body::Hull;
-use colltrans_kernel::motion::{Moved, Piece};
+use colltrans_convex::body::VertexHull;
+use colltrans_kernel::motion::{Piece, PiecePlacement};
 use colltrans_kernel::noise::Noise;
 
 /// Angle of rotation in radians above which the curvature bound is infinite.
@@ -52,8 +52,8 @@ pub(super) struct SpanFrame<'s, 'a> {
     pub(super) span: &'s Span<'a, SolidTree<'a>>,
     /// Error bound of coordinates along a unit normal, in world units.
     coordinate_error: f64,
-    /// Whether both bodies have the same angular velocity and axis. One then only moves along the axis, as seen from
-    /// the other.
+    /// Whether both bodies have the same angular velocity and axis, up to rounding. In the frame that rotates with
+    /// them, one then only translates relative to the other.
     has_common_rotation: bool,
 }
 
@@ -168,8 +168,8 @@ impl<'s, 'a> SpanFrame<'s, 'a> {
             let swung = 2.0 * piece.arm.length() * (piece.rate.abs() * h).min(1.0);
             span.body(which).reach() + swung + piece.velocity.length() * h
         };
-        let noise = Noise::of(start.offset.length() + far(0) + far(1));
-        let coordinate_error = COORDINATE_NOISES * noise.point() + span.error;
+        let noise = Noise::for_size(start.offset.length() + far(0) + far(1));
+        let coordinate_error = COORDINATE_NOISES * noise.point_error() + span.error;
         let arms = [0, 1].map(|which| span.piece(which).arm);
         let axis_distance =
             perpendicular_part(start.offset - (arms[1] - arms[0]), span.piece(0).axis).length();
@@ -184,7 +184,7 @@ impl<'s, 'a> SpanFrame<'s, 'a> {
         let at = self.span.instant_at(time);
         let rotations = [at.bodies.moving_matrix, at.bodies.fixed_matrix];
         let place = |k: usize| {
-            let (rotation, Moved { arm, .. }) = (rotations[k], at.moved[k]);
+            let (rotation, PiecePlacement { arm, .. }) = (rotations[k], at.moved[k]);
             BodyPlacement { rotation, arm, along: arm.dot(self.piece(k).axis) }
         };
         Snapshot { time, places: [place(0), place(1)], offset: at.bodies.offset }
@@ -232,8 +232,9 @@ impl Window<'_, '_, '_> {
         self.rotation_angle(0).max(self.rotation_angle(1))
     }
 
-    /// Returns an upper bound of the sum of the distances that the middles of both parts move. If both bodies have the
-    /// same angular velocity and axis, it is the distance of one relative to the other.
+    /// Returns an upper bound of the distance by which the middles of both parts move relative to each other: the sum
+    /// of their arcs and of the drift of the axes. If both bodies have the same angular velocity and axis, it is the
+    /// drift.
     pub(super) fn travel_bound(&self) -> f64 {
         let drift =
             self.frame.span.relative_velocity().length() * (self.ends[1].time - self.ends[0].time);
@@ -280,8 +281,8 @@ impl Window<'_, '_, '_> {
         c <= max_provable_curvature(gaps, ROOT_MARGIN)
     }
 
-    /// Returns the part of `C` of a body. `most` is its maximum coordinate at the ends, along a normal of at most the
-    /// given length.
+    /// Returns the part of `C` of the moving body (0) or the fixed body (1). `most` is the larger support of the part
+    /// at both ends along `W`, divided by the square of the angle. `length` is at least the length of the normal.
     #[inline]
     fn curvature_part(&self, which: usize, most: f64, length: f64) -> f64 {
         let angle = self.rotation_angle(which);

@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use colltrans_convex::{Cast, ConvexPolyhedron, Outcome, Pair, Pose, QueryError};
 use colltrans_motion::{
-    Meeting, Motion, MotionCast, MotionClearance, MotionContact, MotionOutcome, MotionProof,
-    MotionProofError,
+    Motion, MotionCast, MotionClearance, MotionContact, MotionOutcome, MotionProof,
+    MotionProofError, ProvenContact,
 };
 use colltrans_solid::Solid;
 use colltrans_testkit::bodies::{at_xyz as at, centered as cuboid, hull};
@@ -23,17 +23,17 @@ fn random_motion(random: &mut Random, most: f64) -> Motion {
     let angle = random.range(-most, most);
     let way = (to - from) * random.range(0.5, 2.0);
     match random.index(5) {
-        0 => Motion::turn(pose, random.vector() * 3.0, random.direction(), angle),
+        0 => Motion::rotation_about(pose, random.vector() * 3.0, random.direction(), angle),
         1 => {
             let rise = random.range(-3.0, 3.0);
             Motion::screw(pose, random.vector() * 3.0, random.direction(), angle, rise)
         }
-        2 => Motion::thrown(pose, from, way, random.direction() * angle),
-        3 => Motion::slide(pose, way),
+        2 => Motion::free_flight(pose, from, way, random.direction() * angle),
+        3 => Motion::translation(pose, way),
         _ => {
             let poses = [(); 3]
                 .map(|()| Pose::new(random.rotation(), random.vector() * 4.0).expect("a pose"));
-            Motion::through(&[pose, poses[0], poses[1], poses[2]])
+            Motion::through_poses(&[pose, poses[0], poses[1], poses[2]])
         }
     }
     .expect("a motion")
@@ -42,7 +42,7 @@ fn random_motion(random: &mut Random, most: f64) -> Motion {
 /// Returns a lower bound of the depth of the bodies at a time; negative if they are separated.
 fn overlap_lower_bound(cast: [(&ConvexPolyhedron, &Motion); 2], time: f64) -> f64 {
     let [(p, along), (q, other)] = cast;
-    let [a, b] = [along, other].map(|motion| motion.at(time).expect("a pose"));
+    let [a, b] = [along, other].map(|motion| motion.pose_at(time).expect("a pose"));
     Pair::new(p.at(a), q.at(b)).expect("a pair").depth().expect("a depth").lower
 }
 
@@ -50,10 +50,10 @@ fn overlap_lower_bound(cast: [(&ConvexPolyhedron, &Motion); 2], time: f64) -> f6
 fn checked_outcome(
     bodies: [&ConvexPolyhedron; 2],
     motions: [&Motion; 2],
-    keep: f64,
+    min_gap: f64,
 ) -> MotionOutcome {
     let cast = MotionCast::new(bodies[0].along(motions[0]), bodies[1].along(motions[1]));
-    let cast = cast.and_then(|cast| cast.keeping(keep)).expect("a cast");
+    let cast = cast.and_then(|cast| cast.with_min_gap(min_gap)).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
     let proof = proof_of(&outcome);
     let [lower, upper] = cast.verify(proof).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
@@ -69,16 +69,16 @@ fn checked_outcome(
     }
     for k in 0..if upper == 0.0 { 0 } else { 100 } {
         let time = lower * f64::from(k) / 100.0;
-        if keep > 0.0 {
-            let [a, b] = motions.map(|motion| motion.at(time).expect("a pose"));
+        if min_gap > 0.0 {
+            let [a, b] = motions.map(|motion| motion.pose_at(time).expect("a pose"));
             let pair = Pair::new(bodies[0].at(a), bodies[1].at(b)).expect("a pair");
             let distance = pair.distance().expect("a distance");
-            assert!(distance.upper > keep * (1.0 - 1e-12) - 1e-12, "{time}: {outcome:?}");
+            assert!(distance.upper > min_gap * (1.0 - 1e-12) - 1e-12, "{time}: {outcome:?}");
         } else {
             assert!(overlap_lower_bound(both, time) < 1e-12, "{time}: {outcome:?}");
         }
     }
-    if keep == 0.0 && upper <= 1.0 {
+    if min_gap == 0.0 && upper <= 1.0 {
         assert!(overlap_lower_bound(both, upper) > 0.0, "{outcome:?}");
     }
     outcome
@@ -110,10 +110,10 @@ fn random_motions_match_samples_and_verify() {
         let [p, q] = [hull(n, &mut random), hull(n, &mut random)];
         let most = random.pick(&[1.0, 6.0, 6.0, 100.0]);
         let along = random_motion(&mut random, most);
-        let still = Motion::still(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"));
+        let still = Motion::at_rest(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"));
         let other = if random.one_in(3) { random_motion(&mut random, most) } else { still };
-        let keep = if random.one_in(4) { random.pick(&[1e-9, 0.01, 0.3]) } else { 0.0 };
-        match checked_outcome([&p, &q], [&along, &other], keep) {
+        let min_gap = if random.one_in(4) { random.pick(&[1e-9, 0.01, 0.3]) } else { 0.0 };
+        match checked_outcome([&p, &q], [&along, &other], min_gap) {
             MotionOutcome::Contact(contact) => {
                 contacts += 1;
                 looks.push(contact.steps.looks);
@@ -133,9 +133,10 @@ fn random_motions_match_samples_and_verify() {
 fn swinging_door_meets_wall_at_closed_form_time() {
     let door = ConvexPolyhedron::cuboid(DVec3::new(0.0, -0.125, 0.0), DVec3::new(1.0, 0.125, 2.0));
     let door = door.expect("a box");
-    let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, PI).expect("a motion");
+    let swing =
+        Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, PI).expect("a motion");
     let wall = ConvexPolyhedron::cuboid(DVec3::new(-9.0, 0.5, -1.0), DVec3::new(9.0, 1.0, 3.0));
-    let still = Motion::still(Pose::IDENTITY);
+    let still = Motion::at_rest(Pose::IDENTITY);
     let found =
         expect_contact(checked_outcome([&door, &wall.expect("a box")], [&swing, &still], 0.0));
     // The corner (1, 1/8) of the door reaches the plane y = 1/2 at sin a + cos a / 8 = 1/2.
@@ -154,8 +155,8 @@ fn translation_matches_linear_cast() {
         let pose = Pose::new(random.rotation(), random.direction() * 4.0).expect("a pose");
         let by = random.direction() * 3.0 - pose.translation();
         let cast = Cast::new(p.at(pose), q.at(Pose::IDENTITY), by).expect("a cast");
-        let slide = Motion::slide(pose, by).expect("a motion");
-        let motions = [&slide, &Motion::still(Pose::IDENTITY)];
+        let slide = Motion::translation(pose, by).expect("a motion");
+        let motions = [&slide, &Motion::at_rest(Pose::IDENTITY)];
         let outcome = checked_outcome([&p, &q], motions, 0.0);
         match (cast.first_contact().expect("an answer"), outcome) {
             (Outcome::Contact(linear), MotionOutcome::Contact(found)) => {
@@ -180,9 +181,10 @@ fn pin_rotating_next_to_wall_takes_at_most_four_samples() {
         (0..48).flat_map(|k| [rim(k) + DVec3::Z, rim(k) - DVec3::Z]).collect();
     let pin = ConvexPolyhedron::from_points(&corners).expect("a pin");
     let wall = cuboid([1.0, 9.0, 9.0]);
-    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, TAU).expect("a motion");
+    let turn =
+        Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, TAU).expect("a motion");
     for gap in [1e-2, 1e-6, 1e-9, 1e-12] {
-        let still = Motion::still(at(2.0 + gap, 0.0, 0.0));
+        let still = Motion::at_rest(at(2.0 + gap, 0.0, 0.0));
         let MotionOutcome::Free(free) = checked_outcome([&pin, &wall], [&turn, &still], 0.0) else {
             panic!("not free at {gap}");
         };
@@ -200,11 +202,11 @@ fn rotating_blade_clears_tip_with_gap_and_meets_it_with_overlap() {
         DVec3::new(1.0, 0.0, -0.3),
     ])
     .expect("a tip");
-    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, PI).expect("a motion");
+    let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, PI).expect("a motion");
     let reach = (1.0_f64 + 0.05 * 0.05).sqrt();
     for gap in [1e-1, 1e-3, 1e-6, 1e-9] {
         let pose = Pose::new(DQuat::from_rotation_z(FRAC_PI_2), DVec3::Y * (reach + gap));
-        let motion = Motion::still(pose.expect("a pose"));
+        let motion = Motion::at_rest(pose.expect("a pose"));
         let outcome = checked_outcome([&blade, &tip], [&turn, &motion], 0.0);
         let MotionOutcome::Free(free) = outcome else { panic!("{gap}: {outcome:?}") };
         println!("{gap:e}: {} looks", free.steps.looks);
@@ -213,7 +215,7 @@ fn rotating_blade_clears_tip_with_gap_and_meets_it_with_overlap() {
         let pose = Pose::new(DQuat::from_rotation_z(FRAC_PI_2), DVec3::Y * (reach - depth));
         let found = expect_contact(checked_outcome(
             [&blade, &tip],
-            [&turn, &Motion::still(pose.expect("a pose"))],
+            [&turn, &Motion::at_rest(pose.expect("a pose"))],
             0.0,
         ));
         assert!(found.steps.looks < 100, "{} looks", found.steps.looks);
@@ -224,8 +226,9 @@ fn rotating_blade_clears_tip_with_gap_and_meets_it_with_overlap() {
 #[test]
 fn bodies_overlapping_at_start_report_overlap() {
     let cube = cuboid([0.5; 3]);
-    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
-    let near = Motion::still(at(0.75, 0.0, 0.0));
+    let turn =
+        Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
+    let near = Motion::at_rest(at(0.75, 0.0, 0.0));
     let outcome = checked_outcome([&cube, &cube], [&turn, &near], 0.0);
     assert!(matches!(outcome, MotionOutcome::Overlapping(_)), "{outcome:?}");
 }
@@ -233,19 +236,20 @@ fn bodies_overlapping_at_start_report_overlap() {
 #[test]
 fn resting_part_with_tolerance_may_rotate_and_leave_but_not_sink() {
     let (part, table) = (cuboid([0.5; 3]), cuboid([5.0, 5.0, 1.0]));
-    let still = Motion::still(at(0.0, 0.0, -1.5));
+    let still = Motion::at_rest(at(0.0, 0.0, -1.5));
     let query = |motion: &Motion, depth: f64| {
         let cast = MotionCast::new(part.along(motion), table.along(&still)).expect("a cast");
-        let cast = cast.tolerating(depth).expect("a depth");
+        let cast = cast.with_tolerance(depth).expect("a depth");
         let outcome = cast.first_contact().expect("an answer");
         cast.verify(proof_of(&outcome)).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
         outcome
     };
     let here = Pose::IDENTITY;
-    let turning = Motion::turn(here, DVec3::ZERO, DVec3::Z, TAU).expect("a motion");
+    let turning = Motion::rotation_about(here, DVec3::ZERO, DVec3::Z, TAU).expect("a motion");
     let leaving = Motion::screw(here, DVec3::ZERO, DVec3::Z, 3.0, 2.0).expect("a motion");
-    let tipping = Motion::turn(here, DVec3::new(0.5, 0.0, -0.5), DVec3::Y, 1.0).expect("a motion");
-    let sinking = Motion::slide(here, DVec3::NEG_Z).expect("a motion");
+    let tipping =
+        Motion::rotation_about(here, DVec3::new(0.5, 0.0, -0.5), DVec3::Y, 1.0).expect("a motion");
+    let sinking = Motion::translation(here, DVec3::NEG_Z).expect("a motion");
     for depth in [1e-12, 1e-9, 1e-3] {
         for motion in [&turning, &leaving, &tipping] {
             let outcome = query(motion, depth);
@@ -289,16 +293,16 @@ fn depth_by_all_axes(bodies: [(&ConvexPolyhedron, Pose); 2]) -> f64 {
 fn direction_of_least_depth_may_change_within_tolerance() {
     // A block is 1/10 deep in a table. It moves sideways off the table and sinks at the same time.
     let (block, table) = (cuboid([0.5; 3]), cuboid([5.0, 5.0, 1.0]));
-    let still = Motion::still(at(-4.6, 0.0, -1.4));
+    let still = Motion::at_rest(at(-4.6, 0.0, -1.4));
     for (by, free) in [([0.85, 0.0, -0.1], true), ([0.8, 0.0, -0.3], false)] {
         let by = DVec3::from_array(by);
         let motions = [
-            Motion::slide(Pose::IDENTITY, by),
+            Motion::translation(Pose::IDENTITY, by),
             Motion::screw(Pose::IDENTITY, DVec3::ZERO, by, 1e-3, by.length()),
         ];
         for motion in motions.map(|motion| motion.expect("a motion")) {
             let cast = MotionCast::new(block.along(&motion), table.along(&still)).expect("a cast");
-            let cast = cast.tolerating(0.2).expect("a depth");
+            let cast = cast.with_tolerance(0.2).expect("a depth");
             let outcome = cast.first_contact().expect("an answer");
             cast.verify(outcome.proof()).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
             let is_free = matches!(outcome, MotionOutcome::Free(_));
@@ -325,15 +329,15 @@ fn tolerated_depth_is_first_exceeded_within_bounds() {
         let [p, q] = [body(&mut random), body(&mut random)];
         let most = random.pick(&[0.5, 3.0]);
         let along = random_motion(&mut random, most);
-        let still = Motion::still(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"));
+        let still = Motion::at_rest(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"));
         let depth = 10.0_f64.powf(random.range(-4.0, 0.0));
         let cast = MotionCast::new(p.along(&along), q.along(&still)).expect("a cast");
-        let cast = cast.tolerating(depth).expect("a depth");
+        let cast = cast.with_tolerance(depth).expect("a depth");
         let outcome = cast.first_contact().expect("an answer");
         cast.verify(outcome.proof()).unwrap_or_else(|error| panic!("{seed} {error}: {outcome:?}"));
         looks.push(outcome.steps().looks);
         let deep = |time: f64| {
-            let place = |motion: &Motion| motion.at(time).expect("a pose");
+            let place = |motion: &Motion| motion.pose_at(time).expect("a pose");
             depth_by_all_axes([(&p, place(&along)), (&q, place(&still))])
         };
         let (kind, [lower, upper]) = match &outcome {
@@ -387,18 +391,19 @@ fn contacts_take_few_samples_and_support_points() {
 fn too_long_motions_return_coarse_error() {
     let cube = cuboid([1.0; 3]);
     let solid = Solid::from_convex(&cube).expect("a solid");
-    let still = Motion::still(at(3.0, 0.0, 0.0));
+    let still = Motion::at_rest(at(3.0, 0.0, 0.0));
     for far in [1e20, 1e50, 1e60] {
-        let slide = Motion::slide(Pose::IDENTITY, DVec3::X * far).expect("a motion");
+        let slide = Motion::translation(Pose::IDENTITY, DVec3::X * far).expect("a motion");
         let cast = MotionCast::new(cube.along(&slide), cube.along(&still)).expect("a cast");
-        let solids = MotionCast::new(solid.along(&slide), solid.along(&still)).expect("a cast");
+        let solids =
+            MotionCast::new(solid.with_motion(&slide), solid.with_motion(&still)).expect("a cast");
         for found in [cast.first_contact().map(|_| ()), solids.first_contact().map(|_| ())] {
-            assert!(matches!(found, Err(QueryError::Coarse { .. })), "{far:e}: {found:?}");
+            assert!(matches!(found, Err(QueryError::PositionError { .. })), "{far:e}: {found:?}");
         }
         let found = cast.clearance().map(|_| ());
-        assert!(matches!(found, Err(QueryError::Coarse { .. })), "{far:e}: {found:?}");
+        assert!(matches!(found, Err(QueryError::PositionError { .. })), "{far:e}: {found:?}");
         // Bodies that move apart never meet, at any distance.
-        let away = Motion::slide(at(1e60, 0.0, 0.0), DVec3::X * 1e40).expect("a motion");
+        let away = Motion::translation(at(1e60, 0.0, 0.0), DVec3::X * 1e40).expect("a motion");
         let cast = MotionCast::new(cube.along(&away), cube.along(&still)).expect("a cast");
         assert!(matches!(cast.first_contact(), Ok(MotionOutcome::Free(_))));
     }
@@ -424,8 +429,8 @@ fn bounds_are_equal_far_from_origin() {
     let cube = cuboid([0.5; 3]);
     let found = |far: DVec3| {
         let pose = Pose::from_translation(far + DVec3::X * 3.0).expect("a pose");
-        let motion = Motion::thrown(pose, pose.translation(), DVec3::X * -3.0, DVec3::Z * 2.0);
-        let still = Motion::still(Pose::from_translation(far).expect("a pose"));
+        let motion = Motion::free_flight(pose, pose.translation(), DVec3::X * -3.0, DVec3::Z * 2.0);
+        let still = Motion::at_rest(Pose::from_translation(far).expect("a pose"));
         let found = expect_contact(checked_outcome(
             [&cube, &cube],
             [&motion.expect("a motion"), &still],
@@ -443,7 +448,7 @@ fn modified_proof_is_rejected_or_equivalent() {
     for _ in 0..60 {
         let [p, q] = [hull(10, &mut random), hull(10, &mut random)];
         let along = random_motion(&mut random, 4.0);
-        let still = Motion::still(Pose::IDENTITY);
+        let still = Motion::at_rest(Pose::IDENTITY);
         let cast = MotionCast::new(p.along(&along), q.along(&still)).expect("a cast");
         let outcome = cast.first_contact().expect("an answer");
         let original = proof_of(&outcome).clone();
@@ -468,14 +473,14 @@ fn modified_proof_is_rejected_or_equivalent() {
             proof.spans[0].drain(1..last.max(1));
         });
         check(&|proof| {
-            if let Some(Meeting { time, .. }) = &mut proof.meeting {
+            if let Some(ProvenContact { time, .. }) = &mut proof.meeting {
                 *time *= 0.5;
             }
         });
     }
     assert!(refused > 200, "{refused}");
     let cube = cuboid([0.5; 3]);
-    let (along, still) = (Motion::still(at(3.0, 0.0, 0.0)), Motion::still(Pose::IDENTITY));
+    let (along, still) = (Motion::at_rest(at(3.0, 0.0, 0.0)), Motion::at_rest(Pose::IDENTITY));
     let cast = MotionCast::new(cube.along(&along), cube.along(&still)).expect("a cast");
     let found = cast.first_contact().expect("an answer");
     let mut turned = proof_of(&found).clone();
@@ -495,8 +500,10 @@ fn rotations_of_all_families_have_verified_proofs() {
             let (a, b) = (cast.moving_pose(), cast.fixed_pose());
             let between = a.translation().lerp(b.translation(), random.unit());
             let angle = random.range(-6.0, 6.0);
-            let Ok(turn) = Motion::turn(a, between, random.direction(), angle) else { continue };
-            let still = Motion::still(b);
+            let Ok(turn) = Motion::rotation_about(a, between, random.direction(), angle) else {
+                continue;
+            };
+            let still = Motion::at_rest(b);
             let cast = MotionCast::new(cast.moving().along(&turn), cast.fixed().along(&still));
             let cast = cast.expect("a cast");
             let outcome = cast.first_contact().unwrap_or_else(|e| panic!("{family} {seed}: {e}"));
@@ -514,19 +521,20 @@ fn start_overlap_is_reported_for_any_minimum_gap() {
     let cube = |half: f64| {
         ConvexPolyhedron::cuboid(DVec3::splat(-half), DVec3::splat(half)).expect("a cube")
     };
-    for (half, keep) in [(1e-50, 2.8e-60), (1e-50, 0.0), (1.0, 1e-18), (1.0, 1e-17), (1.0, 1e-3)] {
+    for (half, min_gap) in [(1e-50, 2.8e-60), (1e-50, 0.0), (1.0, 1e-18), (1.0, 1e-17), (1.0, 1e-3)]
+    {
         let (p, q) = (cube(half), cube(2.0 * half));
         let axis = DVec3::new(1.0, 2.0, 3.0).normalize();
-        let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, axis, 1.0).expect("a turn");
+        let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, axis, 1.0).expect("a turn");
         let cast = MotionCast::new(p.along(&turn), q.at(Pose::IDENTITY)).expect("a cast");
-        let cast = cast.keeping(keep).expect("a gap");
+        let cast = cast.with_min_gap(min_gap).expect("a gap");
         let outcome = cast.first_contact().expect("an answer");
-        assert!(matches!(outcome, MotionOutcome::Overlapping(_)), "{half} {keep}: {outcome:?}");
+        assert!(matches!(outcome, MotionOutcome::Overlapping(_)), "{half} {min_gap}: {outcome:?}");
         assert_eq!(cast.verify(outcome.proof()).expect("it holds"), [0.0, 0.0]);
         let clearance = cast.clearance().expect("an answer");
         assert!(
             matches!(clearance, MotionClearance::Overlapping(_)),
-            "{half} {keep}: {clearance:?}"
+            "{half} {min_gap}: {clearance:?}"
         );
     }
 }
@@ -535,7 +543,7 @@ fn start_overlap_is_reported_for_any_minimum_gap() {
 #[test]
 fn two_points_passing_through_each_other_graze() {
     let point = ConvexPolyhedron::from_points(&[DVec3::ZERO]).expect("a point");
-    let motion = Motion::slide(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion");
+    let motion = Motion::translation(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion");
     for x in [0.0, 1.0, 3.7] {
         let pose = Pose::from_translation(DVec3::X * x).expect("a pose");
         let cast = MotionCast::new(point.along(&motion), point.at(pose)).expect("a cast");

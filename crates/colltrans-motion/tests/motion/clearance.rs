@@ -74,7 +74,7 @@ fn linear_summary(cast: &Cast<Solid>) -> ClearanceSummary {
     match cast.clearance().expect("an answer") {
         Clearance::Blocked { contact, .. } => {
             let place = contact.translation.bounds().map(|t| t.max(0.0));
-            ClearanceSummary::Blocked(place, contact.shrunk_distance.bounds())
+            ClearanceSummary::Blocked(place, contact.offset_distance.bounds())
         }
         Clearance::Free(_) => ClearanceSummary::Free,
         Clearance::Overlapping(_) => ClearanceSummary::Overlapping,
@@ -122,13 +122,14 @@ fn compare_translations_with_casts(
         let mut random = Random::new(seed);
         let [p, q] = [(); 2].map(|()| &bodies[random.index(4)]);
         let (a, b, by) = (poses(&mut random), poses(&mut random), by(&mut random));
-        let [slide, rest] = [Motion::slide(a, by).expect("a motion"), Motion::still(b)];
-        let mut cast = MotionCast::new(p.along(&slide), q.along(&rest)).expect("a cast");
+        let [slide, rest] = [Motion::translation(a, by).expect("a motion"), Motion::at_rest(b)];
+        let mut cast =
+            MotionCast::new(p.with_motion(&slide), q.with_motion(&rest)).expect("a cast");
         let ignores = random.one_in(2);
         // Powers of two offset axis-aligned faces exactly, so faces parallel to the motion remain parallel.
         if ignores || random.one_in(2) {
             let tolerance = random.pick(&[0.5_f64.powi(30), 0.5_f64.powi(7), 0.125]);
-            cast = cast.tolerating(tolerance).expect("a tolerance");
+            cast = cast.with_tolerance(tolerance).expect("a tolerance");
         }
         let start = if ignores { StartOverlap::Ignore } else { StartOverlap::Refuse };
         let straight = Cast::new(p.at(a), q.at(b), by).expect("a cast");
@@ -196,7 +197,7 @@ fn translated_convex_bodies_match_linear_clearance() {
                 .map(|far| Pose::new(random.rotation(), random.direction() * far).expect("a pose"));
             (a, b, random.vector() * 6.0)
         };
-        let slide = Motion::slide(a, by).expect("a motion");
+        let slide = Motion::translation(a, by).expect("a motion");
         let cast = MotionCast::new(p.along(&slide), q.at(b)).expect("a cast");
         let clearance = cast.clearance().expect("an answer");
         let straight = Cast::new(p.at(a), q.at(b), by).expect("a cast").clearance();
@@ -212,13 +213,13 @@ fn translated_convex_bodies_match_linear_clearance() {
         // The default tolerance covers rounding errors only.
         assert!(are_consistent(straight, turning, 1e-9), "{seed}: {straight:?} {turning:?}");
         if let MotionClearance::Blocked { contact, .. } = &clearance {
-            let query = cast.clone().tolerating(contact.tolerance).expect("a tolerance");
+            let query = cast.clone().with_tolerance(contact.tolerance).expect("a tolerance");
             let [lower, upper] = query.verify(&contact.shrunk.proof).expect("a proof");
             assert_eq!([lower, upper], [contact.shrunk.lower, contact.shrunk.upper]);
         }
         // The answer is the same for the bodies as solids.
-        let rest = Motion::still(b);
-        let mixed = MotionCast::between(p.along(&slide), q.along(&rest)).expect("a cast");
+        let rest = Motion::at_rest(b);
+        let mixed = MotionCast::between_any(p.along(&slide), q.along(&rest)).expect("a cast");
         let mixed = summary_of(&mixed.clearance().expect("an answer"));
         assert!(are_consistent(mixed, turning, 1e-9), "{seed}: {mixed:?} {turning:?}");
         counts[match turning {
@@ -239,10 +240,11 @@ fn door_is_blocked_at_nominal_and_shrunk_closed_form_times() {
         &block([0.5, 0.5, -0.5], [1.5, 1.0, 2.5])
             .joined(&block([-0.5, -0.5, -1.5], [1.5, 1.0, -1.0])),
     );
-    let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, FRAC_PI_2).expect("a motion");
-    let rest = Motion::still(Pose::IDENTITY);
-    let cast = MotionCast::new(door.along(&swing), frame.along(&rest)).expect("a cast");
-    let cast = cast.tolerating(0.02).expect("a tolerance");
+    let swing =
+        Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, FRAC_PI_2).expect("a motion");
+    let rest = Motion::at_rest(Pose::IDENTITY);
+    let cast = MotionCast::new(door.with_motion(&swing), frame.with_motion(&rest)).expect("a cast");
+    let cast = cast.with_tolerance(0.02).expect("a tolerance");
     let ClearanceSummary::Blocked(place, shrunk) =
         summary_of(&cast.clearance().expect("an answer"))
     else {
@@ -269,12 +271,12 @@ fn resting_brick_may_rotate_and_slide_but_not_sink() {
     let (brick, table) = (cuboid([0.0; 3], [1.0; 3]), cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]));
     let here = Pose::IDENTITY;
     let motions = [
-        (true, Motion::turn(here, DVec3::new(0.3, 0.2, 0.0), DVec3::Z, 6.0)),
-        (true, Motion::slide(here, DVec3::X)),
+        (true, Motion::rotation_about(here, DVec3::new(0.3, 0.2, 0.0), DVec3::Z, 6.0)),
+        (true, Motion::translation(here, DVec3::X)),
         (true, Motion::screw(here, DVec3::ZERO, DVec3::Z, 3.0, 1.0)),
-        (true, Motion::turn(here, DVec3::X, DVec3::Y, 1.0)),
+        (true, Motion::rotation_about(here, DVec3::X, DVec3::Y, 1.0)),
         (false, Motion::screw(here, DVec3::ZERO, DVec3::Z, 1.0, -1.0)),
-        (false, Motion::turn(here, DVec3::new(0.5, 0.0, 0.0), DVec3::Y, 1.0)),
+        (false, Motion::rotation_about(here, DVec3::new(0.5, 0.0, 0.0), DVec3::Y, 1.0)),
     ];
     for (is_free, motion) in motions {
         let motion = motion.expect("a motion");
@@ -289,7 +291,7 @@ fn resting_brick_may_rotate_and_slide_but_not_sink() {
     }
     // It slides, and is pushed into the table from the middle of the motion on. It is blocked there, not at the start.
     let poses = [here, at(1.0, 0.0, 0.0), at(1.0, 0.0, -1.0)];
-    let pushed = Motion::through(&poses).expect("a motion");
+    let pushed = Motion::through_poses(&poses).expect("a motion");
     let cast = MotionCast::new(brick.along(&pushed), table.at(here)).expect("a cast");
     let ClearanceSummary::Blocked(place, _) = summary_of(&cast.clearance().expect("an answer"))
     else {
@@ -297,19 +299,21 @@ fn resting_brick_may_rotate_and_slide_but_not_sink() {
     };
     assert!((place[0] - 0.5).abs() < 1e-11 && (place[1] - 0.5).abs() < 1e-11, "{place:?}");
     // An eighth deep in the table.
-    let sunk = Motion::slide(at(0.0, 0.0, -0.125), DVec3::X).expect("a motion");
+    let sunk = Motion::translation(at(0.0, 0.0, -0.125), DVec3::X).expect("a motion");
     let cast = MotionCast::new(brick.along(&sunk), table.at(here)).expect("a cast");
     let MotionClearance::Overlapping(found) = cast.clearance().expect("an answer") else {
         panic!("it overlaps")
     };
     assert!((found.least_tolerance.expect("a depth") - 0.125).abs() < 1e-12, "{found:?}");
-    let cast = cast.tolerating(0.126).expect("a tolerance");
+    let cast = cast.with_tolerance(0.126).expect("a tolerance");
     assert!(cast.clearance().expect("an answer").is_free());
     // Nearer than the gap by 0.05.
-    let above = Motion::slide(at(0.0, 0.0, 0.25), DVec3::X).expect("a motion");
+    let above = Motion::translation(at(0.0, 0.0, 0.25), DVec3::X).expect("a motion");
     let cast = MotionCast::new(brick.along(&above), table.at(here)).expect("a cast");
-    assert!(cast.clone().keeping(0.25).expect("a gap").clearance().expect("an answer").is_free());
-    let near = cast.keeping(0.3).expect("a gap").clearance().expect("an answer");
+    assert!(
+        cast.clone().with_min_gap(0.25).expect("a gap").clearance().expect("an answer").is_free()
+    );
+    let near = cast.with_min_gap(0.3).expect("a gap").clearance().expect("an answer");
     let MotionClearance::Overlapping(found) = near else { panic!("it is too near") };
     assert!((found.least_tolerance.expect("a depth") - 0.05).abs() < 1e-12, "{found:?}");
 }
@@ -321,10 +325,11 @@ fn ignored_start_overlap_still_blocks_later_contacts() {
     let blade = solid(&block([-1.0, 0.0, -0.125], [1.0, 2.0, 0.25]));
     let table = block([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
     let shelf = block([-4.0, 0.0, 1.5], [4.0, 3.0, 2.0]);
-    let out = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::X, 1.5).expect("a motion");
-    let rest = Motion::still(Pose::IDENTITY);
+    let out = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::X, 1.5).expect("a motion");
+    let rest = Motion::at_rest(Pose::IDENTITY);
     let query = |scene: &Solid| {
-        let cast = MotionCast::new(blade.along(&out), scene.along(&rest)).expect("a cast");
+        let cast =
+            MotionCast::new(blade.with_motion(&out), scene.with_motion(&rest)).expect("a cast");
         let MotionClearance::Overlapping(found) = cast.clearance().expect("an answer") else {
             panic!("it overlaps")
         };
@@ -353,11 +358,12 @@ fn body_inside_solid_may_leave_but_not_enter_again() {
     // A block inside the material of a ring, which crosses no facet, leaves it and meets it again.
     let ring = solid(&washer([1.0, 3.0], [-0.5, 0.5], 24));
     let ball = solid(&block([1.75, -0.125, -0.125], [2.0, 0.125, 0.125]));
-    let rest = Motion::still(Pose::IDENTITY);
+    let rest = Motion::at_rest(Pose::IDENTITY);
     // About the y axis: out of the upper face, around, and down again.
-    let over = Motion::turn(Pose::IDENTITY, DVec3::new(0.0, 0.0, 0.0), DVec3::NEG_Y, 2.0 * PI);
+    let over =
+        Motion::rotation_about(Pose::IDENTITY, DVec3::new(0.0, 0.0, 0.0), DVec3::NEG_Y, 2.0 * PI);
     let over = over.expect("a motion");
-    let cast = MotionCast::new(ball.along(&over), ring.along(&rest)).expect("a cast");
+    let cast = MotionCast::new(ball.with_motion(&over), ring.with_motion(&rest)).expect("a cast");
     assert_eq!(summary_of(&cast.clearance().expect("an answer")), ClearanceSummary::Overlapping);
     let outcome = cast.first_contact().expect("an answer");
     assert!(matches!(outcome, MotionOutcome::Overlapping(_)));
@@ -381,11 +387,12 @@ fn pressed_pin_may_be_pulled_out_but_its_head_blocks() {
     let ring = solid(&washer([1.0, 3.0], [-0.5, 0.5], 24));
     let stud = pin(1.01, [-1.0, 1.0], 24).joined(&pin(2.0, [1.0, 1.5], 24));
     let stud = solid(&stud);
-    let rest = Motion::still(Pose::IDENTITY);
+    let rest = Motion::at_rest(Pose::IDENTITY);
     let query = |rise: f64| {
         let screw = Motion::screw(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.0, rise);
         let screw = screw.expect("a motion");
-        let cast = MotionCast::new(stud.along(&screw), ring.along(&rest)).expect("a cast");
+        let cast =
+            MotionCast::new(stud.with_motion(&screw), ring.with_motion(&rest)).expect("a cast");
         summary_of(&cast.with_start_overlap(StartOverlap::Ignore).clearance().expect("an answer"))
     };
     assert_eq!(query(3.0), ClearanceSummary::Free);

@@ -5,8 +5,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use colltrans_convex::{ConvexPolyhedron, Pose};
 use colltrans_motion::path::{
-    Frame, How, Joint, JointPath, Mechanism, PathBody, PathCast, PathContact, PathError,
-    PathMeeting, PathOutcome, PathProof, PathProofError, Place, Step,
+    CoverStep, Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathContact,
+    PathContactProof, PathError, PathOutcome, PathPlace, PathProof, PathProofError,
+    PathProvenContact,
 };
 use colltrans_motion::{Motion, MotionCast, MotionOutcome};
 use colltrans_solid::Solid;
@@ -77,17 +78,17 @@ fn path_of_one_joint_matches_rotation() {
         let pose = Pose::new(random.rotation(), random.direction() * 3.0).expect("a pose");
         let (point, axis) = (random.vector() * 2.0, random.direction());
         let angle = random.range(-6.0, 6.0);
-        let turn = Motion::turn(pose, point, axis, angle).expect("a motion");
+        let turn = Motion::rotation_about(pose, point, axis, angle).expect("a motion");
         // Near the path of the body.
-        let by = turn.at(random.unit()).expect("a pose").translation() + random.vector() * 2.0;
+        let by = turn.pose_at(random.unit()).expect("a pose").translation() + random.vector() * 2.0;
         let there = at(by.x, by.y, by.z);
         let cast = MotionCast::new(p.along(&turn), q.at(there)).expect("a cast");
         let origin = Pose::from_translation(point).expect("a pose");
         let frame = Frame { parent: None, origin, joint: Joint::Turning(axis) };
         let mechanism = Mechanism::new(vec![frame]).expect("a joint");
-        let path = JointPath::evenly(vec![vec![0.0], vec![angle]]).expect("a path");
-        let own = pose.translated(-point).expect("a pose");
-        let bodies = vec![PathBody::carried(0, p.at(own)), PathBody::standing(q.at(there))];
+        let path = JointPath::at_unit_times(vec![vec![0.0], vec![angle]]).expect("a path");
+        let own = pose.translated_by(-point).expect("a pose");
+        let bodies = vec![PathBody::carried_by(0, p.at(own)), PathBody::at_rest(q.at(there))];
         let query = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
         let found = query.first_contact().expect("an answer");
         match (cast.first_contact().expect("an answer"), found) {
@@ -119,9 +120,9 @@ fn two_links_reach_wall_at_closed_form_time() {
     let path = JointPath::new(vec![2.0, 4.0], vec![vec![0.0, 0.0], vec![1.0, 1.0]]);
     let path = path.expect("a path");
     let bodies = vec![
-        PathBody::carried(0, link.at(Pose::IDENTITY)),
-        PathBody::carried(1, link.at(Pose::IDENTITY)),
-        PathBody::standing(wall.at(Pose::IDENTITY)),
+        PathBody::carried_by(0, link.at(Pose::IDENTITY)),
+        PathBody::carried_by(1, link.at(Pose::IDENTITY)),
+        PathBody::at_rest(wall.at(Pose::IDENTITY)),
     ];
     let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 2], [1, 2]]).expect("a cast");
     let found = expect_contact(cast.first_contact().expect("an answer"));
@@ -147,7 +148,7 @@ fn thin_wire_between_samples_is_found() {
         rows: vec![vec![0.0, 0.0], vec![FRAC_PI_2, 0.0]],
         bodies: vec![],
         pairs: vec![],
-        keep: 0.0,
+        min_gap: 0.0,
     };
     let with = Arm {
         bodies: vec![
@@ -158,7 +159,7 @@ fn thin_wire_between_samples_is_found() {
         ..arm
     };
     let seen = (0..=100).filter(|k| {
-        let place = Place { row: 0, share: f64::from(*k) / 100.0 };
+        let place = PathPlace { row: 0, share: f64::from(*k) / 100.0 };
         with.gap([0, 1], place).expect("a gap") <= 0.0
     });
     assert_eq!(seen.count(), 0, "sampling misses it");
@@ -172,10 +173,10 @@ fn links_at_rest_relative_to_each_other_take_two_samples() {
     let cube = cuboid([-0.4; 3], [0.4; 3]);
     let mechanism = planar_arm(3);
     let rows = (0..1000).map(|k| vec![f64::from(k) * 0.1, 0.0, f64::from(k)]).collect();
-    let path = JointPath::evenly(rows).expect("a path");
+    let path = JointPath::at_unit_times(rows).expect("a path");
     let bodies = vec![
-        PathBody::carried(0, cube.at(Pose::IDENTITY)),
-        PathBody::carried(1, cube.at(Pose::IDENTITY)),
+        PathBody::carried_by(0, cube.at(Pose::IDENTITY)),
+        PathBody::carried_by(1, cube.at(Pose::IDENTITY)),
     ];
     let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
@@ -194,18 +195,18 @@ fn distant_path_takes_few_samples() {
         (0..1000).map(|k| vec![(f64::from(k) * 0.02).sin(), (f64::from(k) * 0.03).cos()]).collect();
     let bodies = || {
         vec![
-            PathBody::carried(1, hand.at(Pose::IDENTITY)),
-            PathBody::standing(wall.at(Pose::IDENTITY)),
+            PathBody::carried_by(1, hand.at(Pose::IDENTITY)),
+            PathBody::at_rest(wall.at(Pose::IDENTITY)),
         ]
     };
-    let path = JointPath::evenly(rows.clone()).expect("a path");
+    let path = JointPath::at_unit_times(rows.clone()).expect("a path");
     let cast = PathCast::new(&mechanism, &path, bodies(), vec![[0, 1]]).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
     assert!(matches!(outcome, PathOutcome::Free(_)), "{outcome:?}");
     assert!(outcome.steps().looks < 60, "{} looks", outcome.steps().looks);
     // Near the gap all the time: about two samples per row.
     let near = PathCast::new(&mechanism, &path, bodies(), vec![[0, 1]]).expect("a cast");
-    let near = near.keeping(2.99).expect("a gap");
+    let near = near.with_min_gap(2.99).expect("a gap");
     let outcome = near.first_contact().expect("an answer");
     assert!(outcome.steps().looks < 2_500, "{} looks", outcome.steps().looks);
     near.verify(outcome.proof()).expect("a proof");
@@ -225,10 +226,10 @@ fn hand_in_hollow_box_is_free_until_it_meets_side() {
     ])
     .expect("an arm");
     let rows = vec![vec![0.0, 0.0], vec![20.0 * PI, 0.0], vec![20.0 * PI, 1.0]];
-    let path = JointPath::evenly(rows).expect("a path");
+    let path = JointPath::at_unit_times(rows).expect("a path");
     let bodies = vec![
-        PathBody::carried(1, hand.at(Pose::IDENTITY)),
-        PathBody::standing(hollow.at(Pose::IDENTITY)),
+        PathBody::carried_by(1, hand.at(Pose::IDENTITY)),
+        PathBody::at_rest(hollow.at(Pose::IDENTITY)),
     ];
     let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
     let found = expect_contact(cast.first_contact().expect("an answer"));
@@ -241,8 +242,8 @@ fn hand_in_hollow_box_is_free_until_it_meets_side() {
     );
     let thick = thick.expect("a solid");
     let bodies = vec![
-        PathBody::carried(1, hand.at(Pose::IDENTITY)),
-        PathBody::standing(thick.at(Pose::IDENTITY)),
+        PathBody::carried_by(1, hand.at(Pose::IDENTITY)),
+        PathBody::at_rest(thick.at(Pose::IDENTITY)),
     ];
     let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
@@ -255,10 +256,10 @@ fn path_of_one_row_reports_overlap_or_free() {
     let cube = cuboid([-0.4; 3], [0.4; 3]);
     let mechanism = planar_arm(2);
     let query = |angle: f64| {
-        let path = JointPath::evenly(vec![vec![angle, 0.0]]).expect("a path");
+        let path = JointPath::at_unit_times(vec![vec![angle, 0.0]]).expect("a path");
         let bodies = vec![
-            PathBody::carried(1, cube.at(Pose::IDENTITY)),
-            PathBody::standing(cube.at(at(1.0, 0.0, 0.0))),
+            PathBody::carried_by(1, cube.at(Pose::IDENTITY)),
+            PathBody::at_rest(cube.at(at(1.0, 0.0, 0.0))),
         ];
         let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
         cast.first_contact().expect("an answer")
@@ -268,11 +269,11 @@ fn path_of_one_row_reports_overlap_or_free() {
 }
 
 /// Returns all planes of a proof.
-fn planes_mut(proof: &mut PathProof) -> Vec<&mut colltrans_motion::PlaneAt> {
+fn planes_mut(proof: &mut PathProof) -> Vec<&mut colltrans_motion::TimedPlane> {
     let steps = proof.covers.iter_mut().flat_map(|cover| &mut cover.steps);
     let stretches = steps.flat_map(|step| match step {
-        Step::Planes(stretches) => stretches.iter_mut(),
-        Step::Parts { .. } => [].iter_mut(),
+        CoverStep::Planes(stretches) => stretches.iter_mut(),
+        CoverStep::Parts { .. } => [].iter_mut(),
     });
     stretches.flat_map(|stretch| &mut stretch.planes).collect()
 }
@@ -283,16 +284,16 @@ fn modified_proof_is_rejected() {
     let wall = cuboid([-9.0, 0.75, -9.0], [9.0, 0.76, 9.0]);
     let mechanism = planar_arm(2);
     let rows = vec![vec![0.0, 0.0], vec![0.1, 0.05], vec![1.0, 1.0]];
-    let path = JointPath::evenly(rows).expect("a path");
+    let path = JointPath::at_unit_times(rows).expect("a path");
     let bodies = vec![
-        PathBody::carried(0, link.at(Pose::IDENTITY)),
-        PathBody::carried(1, link.at(Pose::IDENTITY)),
-        PathBody::standing(wall.at(Pose::IDENTITY)),
+        PathBody::carried_by(0, link.at(Pose::IDENTITY)),
+        PathBody::carried_by(1, link.at(Pose::IDENTITY)),
+        PathBody::at_rest(wall.at(Pose::IDENTITY)),
     ];
     let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 2], [1, 2]]).expect("a cast");
     let found = expect_contact(cast.first_contact().expect("an answer"));
     let proof = &found.proof;
-    let count = proof.planes();
+    let count = proof.plane_count();
     assert!(count > 6, "{count}");
     for k in 0..count {
         let mut larger = proof.clone();
@@ -323,15 +324,15 @@ fn proof_with_removed_planes_is_rejected() {
     let link = cuboid([0.2, -0.125, -0.1], [1.0, 0.125, 0.1]);
     let wall = cuboid([-9.0, 0.75, -9.0], [9.0, 0.76, 9.0]);
     let mechanism = planar_arm(2);
-    let path = JointPath::evenly(vec![vec![0.0, 0.0], vec![-6.0, 6.0]]).expect("a path");
+    let path = JointPath::at_unit_times(vec![vec![0.0, 0.0], vec![-6.0, 6.0]]).expect("a path");
     let bodies = vec![
-        PathBody::carried(1, link.at(Pose::IDENTITY)),
-        PathBody::standing(wall.at(Pose::IDENTITY)),
+        PathBody::carried_by(1, link.at(Pose::IDENTITY)),
+        PathBody::at_rest(wall.at(Pose::IDENTITY)),
     ];
     let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
     let found = expect_contact(cast.first_contact().expect("an answer"));
     let mut proof = found.proof;
-    let Step::Planes(stretches) = &mut proof.covers[0].steps[0] else { panic!("no planes") };
+    let CoverStep::Planes(stretches) = &mut proof.covers[0].steps[0] else { panic!("no planes") };
     let planes = &mut stretches[0].planes;
     assert!(planes.len() > 4, "{}", planes.len());
     planes.drain(1..planes.len() - 1);
@@ -345,18 +346,18 @@ fn invalid_input_returns_typed_errors() {
     assert_eq!(Mechanism::new(vec![frame(Some(0), z)]), Err(PathError::Parent { frame: 0 }));
     let none = Joint::Sliding(DVec3::ZERO);
     assert!(matches!(Mechanism::new(vec![frame(None, none)]), Err(PathError::Axis { .. })));
-    assert!(matches!(JointPath::evenly(vec![]), Err(PathError::Rows { .. })));
+    assert!(matches!(JointPath::at_unit_times(vec![]), Err(PathError::Rows { .. })));
     let twice = JointPath::new(vec![1.0, 1.0], vec![vec![0.0], vec![0.0]]);
     assert!(matches!(twice, Err(PathError::Time { row: 1, .. })));
-    let uneven = JointPath::evenly(vec![vec![0.0], vec![]]);
+    let uneven = JointPath::at_unit_times(vec![vec![0.0], vec![]]);
     assert!(matches!(uneven, Err(PathError::Row { row: 1, values: 0, joints: 1 })));
     let mechanism = planar_arm(2);
     let cube = cuboid([-0.4; 3], [0.4; 3]);
     let query = |rows: Vec<Vec<f64>>, frame: usize, pair: [usize; 2]| {
-        let path = JointPath::evenly(rows).expect("a path");
+        let path = JointPath::at_unit_times(rows).expect("a path");
         let bodies = vec![
-            PathBody::carried(frame, cube.at(Pose::IDENTITY)),
-            PathBody::standing(cube.at(Pose::IDENTITY)),
+            PathBody::carried_by(frame, cube.at(Pose::IDENTITY)),
+            PathBody::at_rest(cube.at(Pose::IDENTITY)),
         ];
         PathCast::new(&mechanism, &path, bodies, vec![pair]).map(drop)
     };
@@ -377,7 +378,7 @@ fn cube_lowered_flush_onto_step_reports_contact() {
         joint: Joint::Sliding(DVec3::new(0.0, -1.0, 0.0)),
     };
     let mechanism = Mechanism::new(vec![lift]).expect("a lift");
-    let path = JointPath::evenly(vec![vec![0.0], vec![8.0]]).expect("a path");
+    let path = JointPath::at_unit_times(vec![vec![0.0], vec![8.0]]).expect("a path");
     let pieces = [cuboid([0.0; 3], [3.0, 1.0, 1.0]), cuboid([0.0, 1.0, 0.0], [1.0, 3.0, 1.0])];
     let step = Solid::from_pieces(&pieces.map(|piece| Solid::from_convex(&piece).unwrap()));
     let (step, cube) = (step.unwrap(), cuboid([-0.5; 3], [0.5; 3]));
@@ -415,10 +416,10 @@ fn prisms_with_equal_cross_sections_have_proven_contact() {
         (&post, turned(0.5 * FRAC_PI_2, 0.5, 0.5)),
     ] {
         let mechanism = Mechanism::new(vec![lift]).expect("a lift");
-        let path = JointPath::evenly(vec![vec![0.0], vec![4.0]]).expect("a path");
+        let path = JointPath::at_unit_times(vec![vec![0.0], vec![4.0]]).expect("a path");
         let bodies = vec![
-            PathBody::carried(0, body.at(pose)),
-            PathBody::standing(column.at(Pose::IDENTITY)),
+            PathBody::carried_by(0, body.at(pose)),
+            PathBody::at_rest(column.at(Pose::IDENTITY)),
         ];
         let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
         let found = expect_contact(cast.first_contact().expect("an answer"));
@@ -426,19 +427,19 @@ fn prisms_with_equal_cross_sections_have_proven_contact() {
         assert!(found.lower < meets + 1e-11 && found.upper > meets - 1e-15, "{found:?}");
         assert!(found.upper - found.lower < 1e-11, "{:e}", found.upper - found.lower);
         let meeting = found.proof.meeting.clone().expect("it is proven");
-        let How::Point { pieces, point } = meeting.how else { continue };
+        let PathContactProof::Point { pieces, point } = meeting.how else { continue };
         // A point that is not inside both is not a proof, nor is one at another time.
         for (axis, far) in [(0, 2.0), (1, -2.0), (2, 1.0), (2, f64::NAN)] {
             let mut elsewhere = point;
             elsewhere[axis] += far;
-            let how = How::Point { pieces, point: elsewhere };
+            let how = PathContactProof::Point { pieces, point: elsewhere };
             let mut proof = found.proof.clone();
-            proof.meeting = Some(PathMeeting { how, ..meeting.clone() });
+            proof.meeting = Some(PathProvenContact { how, ..meeting.clone() });
             assert!(cast.verify(&proof).is_err(), "{axis} {far}");
         }
         let mut proof = found.proof.clone();
-        let place = Place { share: found.lower, ..meeting.place };
-        proof.meeting = Some(PathMeeting { place, ..meeting });
+        let place = PathPlace { share: found.lower, ..meeting.place };
+        proof.meeting = Some(PathProvenContact { place, ..meeting });
         assert!(cast.verify(&proof).is_err(), "too early");
     }
 }

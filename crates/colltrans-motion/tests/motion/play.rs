@@ -45,8 +45,8 @@ fn one_carried_plane_proves_sliding_along_common_axis() {
     assert_eq!(cast.verify(outcome.proof()).unwrap(), [1.0, f64::INFINITY]);
     assert!(outcome.steps().looks <= 3, "{:?}", outcome.steps());
     // The search between solids has the same outcome.
-    let solids = MotionCast::between(cube.along(&moving), cube.along(&fixed)).unwrap();
-    let outcome = solids.tolerating(0.0).unwrap().first_contact().unwrap();
+    let solids = MotionCast::between_any(cube.along(&moving), cube.along(&fixed)).unwrap();
+    let outcome = solids.with_tolerance(0.0).unwrap().first_contact().unwrap();
     assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
 }
 
@@ -55,18 +55,18 @@ fn one_carried_plane_proves_sliding_along_common_axis() {
 fn proof_of_solids_is_rejected_for_other_queries() {
     let cube = ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).unwrap();
     let there = Pose::from_translation(DVec3::X * 1.5).unwrap();
-    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.5).unwrap();
-    let rest = Motion::still(there);
+    let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.5).unwrap();
+    let rest = Motion::at_rest(there);
     let cast = MotionCast::new(cube.along(&turn), cube.along(&rest)).unwrap();
-    let solids = MotionCast::between(cube.along(&turn), cube.along(&rest)).unwrap();
-    let solids = solids.tolerating(0.0).unwrap().certified_first_contact().unwrap();
+    let solids = MotionCast::between_any(cube.along(&turn), cube.along(&rest)).unwrap();
+    let solids = solids.with_tolerance(0.0).unwrap().certified_first_contact().unwrap();
     let mut proof = cast.first_contact().unwrap().proof().clone();
     proof.spans.clear();
     proof.solids = Some(Box::new(solids.proof().clone()));
     assert_eq!(cast.verify(&proof).unwrap(), [1.0, f64::INFINITY]);
-    let kept = cast.clone().keeping(0.6).unwrap();
+    let kept = cast.clone().with_min_gap(0.6).unwrap();
     assert!(kept.verify(&proof).is_err(), "a cover without a gap does not prove one");
-    let deep = cast.clone().tolerating(0.1).unwrap();
+    let deep = cast.clone().with_tolerance(0.1).unwrap();
     assert!(deep.verify(&proof).is_err(), "covers of solids do not prove depths");
     let mut changed = proof.clone();
     changed.spans = vec![Vec::new()];

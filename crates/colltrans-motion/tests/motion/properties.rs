@@ -71,7 +71,7 @@ impl Setting {
 
     fn outcome(&self) -> MotionOutcome {
         let [p, q] = &self.bodies;
-        verified_outcome([p, q], [&self.screw(self.start), &Motion::still(self.other)])
+        verified_outcome([p, q], [&self.screw(self.start), &Motion::at_rest(self.other)])
     }
 }
 
@@ -90,7 +90,7 @@ fn swapped_bodies_have_same_time() {
     let mut contacts = 0;
     for (setting, outcome) in settings(1, 300) {
         let [p, q] = &setting.bodies;
-        let motions = [&Motion::still(setting.other), &setting.screw(setting.start)];
+        let motions = [&Motion::at_rest(setting.other), &setting.screw(setting.start)];
         assert_consistent(&outcome, &verified_outcome([q, p], motions), 0.0);
         contacts += u32::from(matches!(outcome, MotionOutcome::Contact(_)));
     }
@@ -104,9 +104,9 @@ fn motion_through_poses_has_same_contact_as_screw() {
         let screw = setting.screw(setting.start);
         // Each piece rotates by less than half a turn, so it is the shorter rotation.
         let poses: Vec<Pose> =
-            (0..=4).map(|k| screw.at(0.25 * f64::from(k)).expect("a pose")).collect();
-        let pieces = Motion::through(&poses).expect("a motion");
-        let found = verified_outcome([p, q], [&pieces, &Motion::still(setting.other)]);
+            (0..=4).map(|k| screw.pose_at(0.25 * f64::from(k)).expect("a pose")).collect();
+        let pieces = Motion::through_poses(&poses).expect("a motion");
+        let found = verified_outcome([p, q], [&pieces, &Motion::at_rest(setting.other)]);
         // Intermediate poses are rounded, so grazing bodies may or may not touch.
         let is_decided = |of: &MotionOutcome| !matches!(of, MotionOutcome::Grazing(_));
         let [x, y] = [&outcome, &found].map(bounds);
@@ -136,8 +136,8 @@ fn cubes_with_common_motion_are_free_with_few_samples() {
             assert!(free.steps.looks <= 4, "{} looks at {gap:e}", free.steps.looks);
             // The same motion through poses, which are rounded.
             let through = |pose: Pose| {
-                let poses = [0.0, 0.5, 1.0].map(|time| screw(pose).at(time).expect("a pose"));
-                Motion::through(&poses).expect("a motion")
+                let poses = [0.0, 0.5, 1.0].map(|time| screw(pose).pose_at(time).expect("a pose"));
+                Motion::through_poses(&poses).expect("a motion")
             };
             if gap >= 1e-10 {
                 let [a, b] = poses.map(through);
@@ -158,8 +158,8 @@ fn oblique_cube_face_meets_edge_with_narrow_bounds() {
             for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE] {
                 let by = DQuat::from_axis_angle(axis.normalize(), slant);
                 let pose = Pose::new(by, DVec3::new(-3.0, aside, 0.0)).expect("a pose");
-                let slide = Motion::slide(pose, DVec3::X * 4.0).expect("a motion");
-                let there = Motion::still(Pose::IDENTITY);
+                let slide = Motion::translation(pose, DVec3::X * 4.0).expect("a motion");
+                let there = Motion::at_rest(Pose::IDENTITY);
                 let found = expect_contact(verified_outcome([&cube, &cube], [&slide, &there]));
                 let width = found.upper - found.lower;
                 assert!(width < 1e-12, "{slant} {aside} {axis}: {} {width:e}", found.lower);
@@ -179,7 +179,7 @@ fn common_rigid_transformation_preserves_time() {
         let (point, axis) = (carry.transform_point(setting.point), turn * setting.axis);
         let screw =
             Motion::screw(carried(&setting.start), point, axis, setting.angle, setting.rise);
-        let still = Motion::still(carried(&setting.other));
+        let still = Motion::at_rest(carried(&setting.other));
         let found = verified_outcome([p, q], [&screw.expect("a motion"), &still]);
         let [x, y] = [&outcome, &found].map(bounds);
         if x[1] - x[0] < 1e-11 && y[1] - y[0] < 1e-11 {
@@ -193,9 +193,9 @@ fn additional_full_rotations_preserve_first_contact() {
     let mut contacts = 0;
     for (setting, _) in settings(4, 300) {
         let [p, q] = &setting.bodies;
-        let still = Motion::still(setting.other);
+        let still = Motion::at_rest(setting.other);
         let turn = |angle: f64| {
-            let turn = Motion::turn(setting.start, setting.point, setting.axis, angle);
+            let turn = Motion::rotation_about(setting.start, setting.point, setting.axis, angle);
             verified_outcome([p, q], [&turn.expect("a motion"), &still])
         };
         let once = turn(TAU);
@@ -235,8 +235,8 @@ fn tip_and_wall(depth: f64) -> [ConvexPolyhedron; 2] {
 #[test]
 fn grazing_tip_meets_wall_at_closed_form_time() {
     let start = Pose::new(DQuat::from_rotation_z(-1.0), DVec3::ZERO).expect("a pose");
-    let swing = Motion::turn(start, DVec3::ZERO, DVec3::Z, 2.0).expect("a motion");
-    let still = Motion::still(Pose::IDENTITY);
+    let swing = Motion::rotation_about(start, DVec3::ZERO, DVec3::Z, 2.0).expect("a motion");
+    let still = Motion::at_rest(Pose::IDENTITY);
     for k in 3..=13 {
         let depth = 10.0_f64.powi(-k);
         let [blade, wall] = tip_and_wall(depth);
@@ -265,12 +265,13 @@ fn grazing_tip_meets_wall_at_closed_form_time() {
 fn fast_rotation_meets_wall_in_first_turn() {
     let [blade, wall] = tip_and_wall(1e-3);
     let still =
-        Motion::still(Pose::new(DQuat::from_rotation_z(FRAC_PI_2), DVec3::ZERO).expect("a pose"));
+        Motion::at_rest(Pose::new(DQuat::from_rotation_z(FRAC_PI_2), DVec3::ZERO).expect("a pose"));
     // The wall is rotated by a quarter turn. The tip reaches it where the sine is 1 - depth.
     let depth = 1.0 - wall.vertices().iter().map(|v| v.x).fold(f64::INFINITY, f64::min);
     let reached = FRAC_PI_2 - 2.0 * (0.5 * depth).sqrt().asin();
     for angle in [2.0, 100.0, 1e4, 1e5] {
-        let spin = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, angle).expect("a motion");
+        let spin =
+            Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, angle).expect("a motion");
         let found = expect_contact(verified_outcome([&blade, &wall], [&spin, &still]));
         let expected = reached / angle;
         let off = 1e-13 * expected;
@@ -279,7 +280,8 @@ fn fast_rotation_meets_wall_in_first_turn() {
     }
     // A thousand turns past the wall, each equally near.
     let [blade, wall] = tip_and_wall(-1e-3);
-    let spin = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1e3 * TAU).expect("a motion");
+    let spin =
+        Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1e3 * TAU).expect("a motion");
     let outcome = verified_outcome([&blade, &wall], [&spin, &still]);
     let MotionOutcome::Free(free) = &outcome else { panic!("{outcome:?}") };
     assert!(free.steps.looks <= 40_000, "{} looks", free.steps.looks);
@@ -293,21 +295,22 @@ fn parallel_faces_meet_when_gap_closes() {
         let start = at(0.25, 0.5, 0.5 + gap);
         // Rotation and translation in the plane keep the gap.
         for way in [DVec3::ZERO, DVec3::new(0.5, -0.25, 0.0)] {
-            let turn = Motion::thrown(start, start.translation(), way, DVec3::Z * 5.0);
-            let still = Motion::still(Pose::IDENTITY);
+            let turn = Motion::free_flight(start, start.translation(), way, DVec3::Z * 5.0);
+            let still = Motion::at_rest(Pose::IDENTITY);
             let outcome = verified_outcome([&part, &plate], [&turn.expect("a motion"), &still]);
             let MotionOutcome::Free(free) = &outcome else { panic!("{gap}: {outcome:?}") };
             assert!(free.steps.looks <= 10, "{} looks at {gap}", free.steps.looks);
         }
         // A screw towards the plate meets it face to face when the gap is closed.
         let down = Motion::screw(start, DVec3::ZERO, DVec3::Z, 4.0, -4.0 * gap).expect("a motion");
-        let still = Motion::still(Pose::IDENTITY);
+        let still = Motion::at_rest(Pose::IDENTITY);
         let found = expect_contact(verified_outcome([&part, &plate], [&down, &still]));
         let off = 1e-15 / gap;
         assert!(found.lower <= 0.25 + off && 0.25 <= found.upper + off, "{gap}: {found:?}");
         assert!(found.upper - found.lower < 1e-13 / gap, "{gap}: {found:?}");
         // A tilt meets the plate with an edge.
-        let tilt = Motion::turn(start, start.translation(), DVec3::Y, 0.5).expect("a motion");
+        let tilt =
+            Motion::rotation_about(start, start.translation(), DVec3::Y, 0.5).expect("a motion");
         let found = expect_contact(verified_outcome([&part, &plate], [&tilt, &still]));
         // 0.5 sin a + 0.25 cos a = 0.25 + gap.
         let (r, phase) = ((0.25_f64 + 0.0625).sqrt(), 0.5_f64.atan());

@@ -21,7 +21,7 @@ fn verified_outcome([(p, a), (q, b)]: [MovingBody; 2]) -> MotionOutcome {
 
 /// Returns a lower bound of the depth of the bodies at a time.
 fn depth([(p, a), (q, b)]: [MovingBody; 2], time: f64) -> f64 {
-    let [at, to] = [a, b].map(|motion| motion.at(time).expect("a pose"));
+    let [at, to] = [a, b].map(|motion| motion.pose_at(time).expect("a pose"));
     Pair::new(p.at(at), q.at(to)).expect("a pair").depth().expect("a depth").lower
 }
 
@@ -50,8 +50,8 @@ fn parry_317_rotating_cuboid_meets_another() {
     let found = [DVec3::ZERO, DVec3::new(512.0, -4096.0, 64.0)].map(|far| {
         let start = Pose::new(DQuat::from_rotation_x(0.2), far).expect("a pose");
         let hinge = far - DVec3::X * 0.9;
-        let swing = Motion::turn(start, hinge, DVec3::Z, 1.25).expect("a motion");
-        let still = Motion::still(
+        let swing = Motion::rotation_about(start, hinge, DVec3::Z, 1.25).expect("a motion");
+        let still = Motion::at_rest(
             Pose::from_translation(far + DVec3::new(0.35, 0.9, 0.05)).expect("a pose"),
         );
         let bodies = [(&bar, &swing), (&block, &still)];
@@ -74,9 +74,9 @@ fn parry_176_contact_at_start_has_verified_answer() {
             for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(1.0, 2.0, 3.0)] {
                 let start = at(0.0, 1.0 + gap, 0.0);
                 let way = DVec3::new(0.1, 0.2, -0.3);
-                let thrown = Motion::thrown(start, start.translation(), way, axis * spin);
+                let thrown = Motion::free_flight(start, start.translation(), way, axis * spin);
                 let thrown = thrown.expect("a motion");
-                let still = Motion::still(Pose::IDENTITY);
+                let still = Motion::at_rest(Pose::IDENTITY);
                 let outcome = verified_outcome([(&p, &thrown), (&q, &still)]);
                 let overlaps = matches!(outcome, MotionOutcome::Overlapping(_));
                 assert_eq!(overlaps, gap < -1e-14, "{gap} {spin} {outcome:?}");
@@ -91,7 +91,7 @@ fn ncollide_369_equal_velocities_terminate_as_free() {
     let cube = cuboid([0.5; 3]);
     for gap in [1.0, 1e-3, 1e-9, 1e-12] {
         let [a, b] = [at(0.0, 0.0, 0.0), at(1.0 + gap, 0.0, 0.0)]
-            .map(|pose| Motion::slide(pose, DVec3::new(3.0, 4.0, 5.0)).expect("a motion"));
+            .map(|pose| Motion::translation(pose, DVec3::new(3.0, 4.0, 5.0)).expect("a motion"));
         let outcome = verified_outcome([(&cube, &a), (&cube, &b)]);
         assert!(is_free(&outcome), "{gap}: {outcome:?}");
         assert!(outcome.steps().looks <= 3, "{gap}: {:?}", outcome.steps());
@@ -112,13 +112,13 @@ fn ncollide_369_equal_velocities_terminate_as_free() {
 #[test]
 fn box2d_115_small_box_passes_corner() {
     let (long, small) = (cuboid([25.0, 5.0, 1.0]), cuboid([2.5, 2.5, 1.0]));
-    let still = Motion::still(turned(24.0, -60.0, 2.95));
+    let still = Motion::at_rest(turned(24.0, -60.0, 2.95));
     let from = DVec3::new(53.474_274, -50.252_514, 0.0);
     let to = DVec3::new(54.595_478, -51.083_473, 0.0);
     let spin = DVec3::Z * (513.627_81 - 513.366_76);
     for whole in [0.0, 162.0 * PI] {
         let start = turned(from.x, from.y, 513.366_76 - 162.0 * PI + whole);
-        let thrown = Motion::thrown(start, from, to - from, spin).expect("a motion");
+        let thrown = Motion::free_flight(start, from, to - from, spin).expect("a motion");
         let bodies = [(&small, &thrown), (&long, &still)];
         let outcome = verified_outcome(bodies);
         match first_sample(bodies, 2_000) {
@@ -131,7 +131,8 @@ fn box2d_115_small_box_passes_corner() {
     }
     // With 81 turns during the motion, which are not part of the report.
     let start = turned(from.x, from.y, 513.366_76 - 162.0 * PI);
-    let turns = Motion::thrown(start, from, to - from, DVec3::Z * 162.0 * PI).expect("a motion");
+    let turns =
+        Motion::free_flight(start, from, to - from, DVec3::Z * 162.0 * PI).expect("a motion");
     let bodies = [(&small, &turns), (&long, &still)];
     let outcome = verified_outcome(bodies);
     let sample = first_sample(bodies, 20_000);
@@ -149,13 +150,14 @@ fn fcl_555_approaching_boxes_meet() {
     let above = ConvexPolyhedron::cuboid(DVec3::new(-1.0, -1.0, 3.0), DVec3::new(1.0, 1.0, 5.0));
     let below = ConvexPolyhedron::cuboid(DVec3::new(-1.0, -1.0, -5.0), DVec3::new(1.0, 1.0, -3.0));
     let [above, below] = [above, below].map(|body| body.expect("a box"));
-    let [down, up] =
-        [-4.0, 4.0].map(|way| Motion::slide(Pose::IDENTITY, DVec3::Z * way).expect("a motion"));
+    let [down, up] = [-4.0, 4.0]
+        .map(|way| Motion::translation(Pose::IDENTITY, DVec3::Z * way).expect("a motion"));
     let found = expect_contact(verified_outcome([(&above, &down), (&below, &up)]));
     assert!(found.lower <= 0.75 && 0.75 <= found.upper && found.upper - found.lower < 1e-13);
     assert_eq!(found.normal, Some(DVec3::NEG_Z));
     let solids = [&above, &below].map(|body| Solid::from_convex(body).expect("a solid"));
-    let cast = MotionCast::new(solids[0].along(&down), solids[1].along(&up)).expect("a cast");
+    let cast =
+        MotionCast::new(solids[0].with_motion(&down), solids[1].with_motion(&up)).expect("a cast");
     let outcome = cast.certified_first_contact().expect("an answer");
     // Face to face and edge on edge, no two facets cross, so an upper bound is not required.
     let (MotionOutcome::Contact(solid) | MotionOutcome::Grazing(solid)) = &outcome else {
@@ -171,9 +173,12 @@ fn fcl_555_approaching_boxes_meet() {
 #[test]
 fn fcl_120_translated_boxes_match_closed_forms() {
     let cube = cuboid([0.5; 3]);
-    let still = Motion::still(Pose::IDENTITY);
+    let still = Motion::at_rest(Pose::IDENTITY);
     let query = |start: Pose, way: DVec3| {
-        verified_outcome([(&cube, &Motion::slide(start, way).expect("a motion")), (&cube, &still)])
+        verified_outcome([
+            (&cube, &Motion::translation(start, way).expect("a motion")),
+            (&cube, &still),
+        ])
     };
     let diagonal = 0.5_f64.sqrt();
     for (start, way, expected) in [
@@ -213,8 +218,9 @@ fn godot_jolt_389_rotating_bat_hits_ball() {
         .collect();
     let ball = ConvexPolyhedron::from_points(&ball).expect("a ball");
     for (place, angle) in [(DVec3::Y * 0.9, PI), (DVec3::Y * 0.9, -PI), (DVec3::Y * 1.15, PI)] {
-        let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, angle).expect("a motion");
-        let still = Motion::still(Pose::from_translation(place).expect("a pose"));
+        let swing =
+            Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, angle).expect("a motion");
+        let still = Motion::at_rest(Pose::from_translation(place).expect("a pose"));
         let bodies = [(&bat, &swing), (&ball, &still)];
         assert!(depth(bodies, 0.0) == 0.0 && depth(bodies, 1.0) == 0.0);
         let outcome = verified_outcome(bodies);

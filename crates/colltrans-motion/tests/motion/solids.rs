@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use colltrans_convex::{Cast, ConvexPolyhedron, Outcome, Pose};
 use colltrans_motion::{
-    FacetsMeeting, FacetsMet, Motion, MotionCast, MotionContact, MotionCover, MotionOutcome,
+    FacetContact, FacetContactProof, Motion, MotionCast, MotionContact, MotionCover, MotionOutcome,
     SolidMotionProof,
 };
 use colltrans_solid::{Solid, SolidCast};
@@ -18,7 +18,7 @@ use colltrans_testkit::solids::{pin, thread, washer};
 use glam::{DQuat, DVec3};
 
 fn rest_motion() -> Motion {
-    Motion::still(Pose::IDENTITY)
+    Motion::at_rest(Pose::IDENTITY)
 }
 
 /// Computes the certified first contact and checks it: its proof, and exact overlaps at sampled times.
@@ -55,10 +55,10 @@ fn checked_outcome_with_gap(
     // Exact decisions of the library at sampled times.
     let bodies = cast.bodies();
     let overlaps = |time: f64| {
-        let [a, b] = motions.map(|motion| motion.at(time).expect("a pose"));
+        let [a, b] = motions.map(|motion| motion.pose_at(time).expect("a pose"));
         let cast = Cast::new(bodies[0].at(a), bodies[1].at(b), DVec3::Z).expect("a cast");
         let cast = cast.with_tolerance(tolerance_of(&outcome)).expect("a tolerance");
-        cast.keeping(gap).expect("a gap").overlaps()
+        cast.with_min_gap(gap).expect("a gap").overlaps()
     };
     for k in 0..if upper == 0.0 { 0 } else { 50 } {
         let time = lower * f64::from(k) / 50.0;
@@ -92,15 +92,16 @@ fn convex_bodies_as_solids_match_convex_search() {
         let pose = Pose::new(random.rotation(), from).expect("a pose");
         let way = (random.vector() * 1.5 - from) * random.range(0.5, 2.0);
         let spin = random.direction() * random.range(0.1, 6.0);
-        let along = Motion::thrown(pose, from, way, spin).expect("a motion");
+        let along = Motion::free_flight(pose, from, way, spin).expect("a motion");
         let other = if random.one_in(3) {
             let pose = Pose::new(random.rotation(), random.vector()).expect("a pose");
-            Motion::turn(pose, random.vector(), random.direction(), 3.0).expect("a motion")
+            Motion::rotation_about(pose, random.vector(), random.direction(), 3.0)
+                .expect("a motion")
         } else {
-            Motion::still(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"))
+            Motion::at_rest(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"))
         };
         let convex = MotionCast::new(p.along(&along), q.along(&other)).expect("a cast");
-        let solids = MotionCast::between(p.along(&along), q.along(&other)).expect("a cast");
+        let solids = MotionCast::between_any(p.along(&along), q.along(&other)).expect("a cast");
         match (
             convex.first_contact().expect("an answer"),
             checked_outcome(&solids, [&along, &other]),
@@ -126,7 +127,8 @@ fn screw_in_nut_is_free_at_its_pitch_only() {
     let turned = |factor: f64| {
         let turn = Motion::screw(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, TAU, 0.5 * factor);
         let (turn, rest) = (turn.expect("a motion"), rest_motion());
-        let cast = MotionCast::new(bolt.along(&turn), nut.along(&rest)).expect("a cast");
+        let cast =
+            MotionCast::new(bolt.with_motion(&turn), nut.with_motion(&rest)).expect("a cast");
         let steps = cast.first_contact().expect("an answer").steps();
         (checked_outcome(&cast, [&turn, &rest]), steps)
     };
@@ -152,9 +154,10 @@ fn swinging_door_meets_frame_at_closed_form_time() {
         &block([0.5, 0.5, -0.5], [1.5, 1.0, 2.5])
             .joined(&block([-0.5, -0.5, -1.5], [1.5, 0.5, -0.5])),
     );
-    let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, FRAC_PI_2).expect("a motion");
+    let swing =
+        Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, FRAC_PI_2).expect("a motion");
     let rest = rest_motion();
-    let cast = MotionCast::new(door.along(&swing), frame.along(&rest)).expect("a cast");
+    let cast = MotionCast::new(door.with_motion(&swing), frame.with_motion(&rest)).expect("a cast");
     let found = expect_contact(checked_outcome(&cast, [&swing, &rest]));
     let (r, phase) = ((1.0_f64 + 1.0 / 64.0).sqrt(), 0.125_f64.atan());
     let expected = ((0.5 / r).asin() - phase) / FRAC_PI_2;
@@ -177,13 +180,15 @@ fn slotted_block() -> Solid {
 fn key_rotates_in_slot_if_its_corner_fits() {
     // A blade of 0.4 by 0.2 rotates in a square slot of 0.5, because its corners are at r = sqrt(0.2) / 2 < 0.25. A
     // blade of 0.48 by 0.2 does not.
-    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::X, PI).expect("a motion");
+    let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::X, PI).expect("a motion");
     let (slotted_block, rest) = (slotted_block(), rest_motion());
     let key = |half: f64| solid(&block([-1.0, -half, -0.1], [0.5, half, 0.1]));
     let (small, large) = (key(0.2), key(0.24));
-    let cast = MotionCast::new(small.along(&turn), slotted_block.along(&rest)).expect("a cast");
+    let cast = MotionCast::new(small.with_motion(&turn), slotted_block.with_motion(&rest))
+        .expect("a cast");
     assert!(matches!(checked_outcome(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
-    let cast = MotionCast::new(large.along(&turn), slotted_block.along(&rest)).expect("a cast");
+    let cast = MotionCast::new(large.with_motion(&turn), slotted_block.with_motion(&rest))
+        .expect("a cast");
     let found = expect_contact(checked_outcome(&cast, [&turn, &rest]));
     // The corner (0.24, -0.1) reaches y = 0.25.
     let r = 0.24_f64.hypot(0.1);
@@ -201,28 +206,32 @@ fn solids_in_contact_may_slide_and_separate_but_not_penetrate() {
     let plate = solid(&block([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]));
     let rest = rest_motion();
     let query = |motion: Motion| {
-        let cast = MotionCast::new(step.along(&motion), plate.along(&rest)).expect("a cast");
+        let cast =
+            MotionCast::new(step.with_motion(&motion), plate.with_motion(&rest)).expect("a cast");
         checked_outcome(&cast, [&motion, &rest])
     };
     let here = Pose::IDENTITY;
-    let turned = Motion::turn(here, DVec3::new(0.3, 0.2, 0.0), DVec3::Z, TAU).expect("a motion");
-    let slid = Motion::slide(here, DVec3::X).expect("a motion");
+    let turned =
+        Motion::rotation_about(here, DVec3::new(0.3, 0.2, 0.0), DVec3::Z, TAU).expect("a motion");
+    let slid = Motion::translation(here, DVec3::X).expect("a motion");
     let raised = Motion::screw(here, DVec3::ZERO, DVec3::Z, 3.0, 1.0).expect("a motion");
-    let tipped = Motion::turn(here, DVec3::X * 2.0, DVec3::Y, 1.0).expect("a motion");
+    let tipped = Motion::rotation_about(here, DVec3::X * 2.0, DVec3::Y, 1.0).expect("a motion");
     for free in [turned, slid, raised, tipped] {
         let outcome = query(free);
         assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
     }
     let pushed = Motion::screw(here, DVec3::ZERO, DVec3::Z, 1.0, -1.0).expect("a motion");
-    let levered = Motion::turn(here, DVec3::new(1.0, 0.0, 0.0), DVec3::Y, 1.0).expect("a motion");
+    let levered =
+        Motion::rotation_about(here, DVec3::new(1.0, 0.0, 0.0), DVec3::Y, 1.0).expect("a motion");
     for blocked in [pushed, levered] {
         let found = expect_contact(query(blocked));
         assert!(found.lower < 1e-11 && found.upper < 1e-11, "{} {}", found.lower, found.upper);
     }
     // Without a tolerance, contact is not distinguished from overlap.
-    let turned = Motion::turn(here, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
-    let cast = MotionCast::new(step.along(&turned), plate.along(&rest)).expect("a cast");
-    let cast = cast.tolerating(0.0).expect("a tolerance");
+    let turned = Motion::rotation_about(here, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
+    let cast =
+        MotionCast::new(step.with_motion(&turned), plate.with_motion(&rest)).expect("a cast");
+    let cast = cast.with_tolerance(0.0).expect("a tolerance");
     let MotionOutcome::Grazing(found) = checked_outcome(&cast, [&turned, &rest]) else {
         panic!("not grazing")
     };
@@ -232,29 +241,32 @@ fn solids_in_contact_may_slide_and_separate_but_not_penetrate() {
 #[test]
 fn fits_containment_and_gaps_are_decided_at_start() {
     let ring = solid(&washer([1.0, 3.0], [-0.5, 0.5], 24));
-    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
+    let turn =
+        Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
     let rest = rest_motion();
     // A pin with the same corners fits, but can rotate only if both are shrunk by the height of a chord.
     let fitting = solid(&pin(1.0, [-1.0, 1.0], 24));
-    let cast = MotionCast::new(fitting.along(&turn), ring.along(&rest)).expect("a cast");
+    let cast =
+        MotionCast::new(fitting.with_motion(&turn), ring.with_motion(&rest)).expect("a cast");
     assert!(expect_contact(checked_outcome(&cast, [&turn, &rest])).upper < 1e-4);
     let chord = 1.0 - (PI / 24.0).cos();
-    let cast = cast.tolerating(1.1 * chord).expect("a tolerance");
+    let cast = cast.with_tolerance(1.1 * chord).expect("a tolerance");
     assert!(matches!(checked_outcome(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
     // Inside the material, no surfaces cross.
     let ball = solid(&block([1.5, -0.25, -0.25], [2.0, 0.25, 0.25]));
-    let cast = MotionCast::new(ball.along(&turn), ring.along(&rest)).expect("a cast");
+    let cast = MotionCast::new(ball.with_motion(&turn), ring.with_motion(&rest)).expect("a cast");
     assert!(matches!(checked_outcome(&cast, [&turn, &rest]), MotionOutcome::Overlapping(_)));
     // A block rotates in a closed cavity.
     let hollow = solid(&block([-2.0; 3], [2.0; 3]).joined(&block([-1.0; 3], [1.0; 3]).reversed()));
     let inner = solid(&block([-0.5; 3], [0.5; 3]));
-    let cast = MotionCast::new(inner.along(&turn), hollow.along(&rest)).expect("a cast");
+    let cast =
+        MotionCast::new(inner.with_motion(&turn), hollow.with_motion(&rest)).expect("a cast");
     assert!(matches!(checked_outcome(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
-    assert!(cast.clone().tolerating(1.0).is_err(), "nothing is left of the inner one");
+    assert!(cast.clone().with_tolerance(1.0).is_err(), "nothing is left of the inner one");
     // With a minimum gap: the corner, at 0.5 sqrt(2) from the axis, comes as near as 1 - 0.5 sqrt(2).
     let gap = 1.0 - 0.5_f64.sqrt();
     let query = |gap: f64| {
-        let cast = cast.clone().keeping(gap).expect("a gap");
+        let cast = cast.clone().with_min_gap(gap).expect("a gap");
         checked_outcome_with_gap(&cast, [&turn, &rest], gap)
     };
     assert!(matches!(query(gap - 1e-9), MotionOutcome::Free(_)));
@@ -274,8 +286,9 @@ fn translation_matches_linear_cast() {
         let (a, b) = (place(&mut random, 6.0), place(&mut random, 0.5));
         let by = random.vector() * 2.0 - a.translation() * 1.5;
         let linear = Cast::new(ell.at(a), ell.at(b), by).expect("a cast");
-        let (slide, rest) = (Motion::slide(a, by).expect("a motion"), Motion::still(b));
-        let cast = MotionCast::new(ell.along(&slide), ell.along(&rest)).expect("a cast");
+        let (slide, rest) = (Motion::translation(a, by).expect("a motion"), Motion::at_rest(b));
+        let cast =
+            MotionCast::new(ell.with_motion(&slide), ell.with_motion(&rest)).expect("a cast");
         match (linear.first_contact().expect("an answer"), checked_outcome(&cast, [&slide, &rest]))
         {
             (Outcome::Contact(one), MotionOutcome::Contact(two)) => {
@@ -306,7 +319,8 @@ fn solids_with_common_motion_are_free_with_few_nodes() {
     let (point, axis) = (DVec3::new(-1.0, 2.0, 0.5), DVec3::new(1.0, 2.0, 3.0));
     let both = [0, 1].map(|_| Motion::screw(pose, point, axis, 5.0, 1.0).expect("a motion"));
     for bar in &bars {
-        let cast = MotionCast::new(hook.along(&both[0]), bar.along(&both[1])).expect("a cast");
+        let cast =
+            MotionCast::new(hook.with_motion(&both[0]), bar.with_motion(&both[1])).expect("a cast");
         let outcome = checked_outcome(&cast, [&both[0], &both[1]]);
         assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
         assert!(outcome.steps().nodes < 2_000, "{:?}", outcome.steps());
@@ -322,7 +336,8 @@ fn modified_proof_is_rejected_or_weaker() {
     for factor in [1.0, 0.9, 0.0] {
         let turn = Motion::screw(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 3.0, 0.5 * factor);
         let turn = turn.expect("a motion");
-        let cast = MotionCast::new(bolt.along(&turn), nut.along(&rest)).expect("a cast");
+        let cast =
+            MotionCast::new(bolt.with_motion(&turn), nut.with_motion(&rest)).expect("a cast");
         let outcome = cast.certified_first_contact().expect("an answer");
         let original = outcome.proof();
         let mut check = |change: &dyn Fn(&mut SolidMotionProof)| {
@@ -396,15 +411,16 @@ fn rotations_of_all_families_pass_exact_checks() {
 fn normals_point_from_moving_to_fixed_body() {
     let plate = solid(&block(DVec3::new(-3.0, -2.0, -1.0), DVec3::new(3.0, 2.0, 0.0)));
     let peg = solid(&block(DVec3::new(-0.4, -0.3, 0.0), DVec3::new(0.5, 0.6, 2.0)));
-    for (tolerance, keep) in [(None, 0.0), (Some(0.02), 0.0), (None, 0.1)] {
+    for (tolerance, min_gap) in [(None, 0.0), (Some(0.02), 0.0), (None, 0.1)] {
         for (from, way) in [(9.0, -20.0), (-8.0, 15.0)] {
             let start = Pose::from_translation(DVec3::Z * from).expect("a pose");
-            let falls = Motion::slide(start, DVec3::Z * way).expect("a motion");
+            let falls = Motion::translation(start, DVec3::Z * way).expect("a motion");
             let stays = rest_motion();
-            let cast = MotionCast::new(peg.along(&falls), plate.along(&stays)).expect("a cast");
+            let cast = MotionCast::new(peg.with_motion(&falls), plate.with_motion(&stays))
+                .expect("a cast");
             let cast =
-                tolerance.map_or_else(|| cast.clone(), |l| cast.clone().tolerating(l).unwrap());
-            let cast = cast.keeping(keep).expect("a cast");
+                tolerance.map_or_else(|| cast.clone(), |l| cast.clone().with_tolerance(l).unwrap());
+            let cast = cast.with_min_gap(min_gap).expect("a cast");
             let MotionOutcome::Contact(contact) = cast.first_contact().expect("an answer") else {
                 panic!("no contact")
             };
@@ -424,9 +440,10 @@ fn oblique_cube_face_meets_edge_with_narrow_bounds() {
             for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE] {
                 let by = DQuat::from_axis_angle(axis.normalize(), slant);
                 let pose = Pose::new(by, DVec3::new(-3.0, aside, 0.0)).expect("a pose");
-                let (slide, rest) = (Motion::slide(pose, DVec3::X * 4.0), rest_motion());
+                let (slide, rest) = (Motion::translation(pose, DVec3::X * 4.0), rest_motion());
                 let slide = slide.expect("a motion");
-                let cast = MotionCast::new(cube.along(&slide), cube.along(&rest)).expect("a cast");
+                let cast = MotionCast::new(cube.with_motion(&slide), cube.with_motion(&rest))
+                    .expect("a cast");
                 let found = expect_contact(checked_outcome(&cast, [&slide, &rest]));
                 let width = found.upper - found.lower;
                 assert!(width < 1e-11, "{slant} {aside} {axis}: {} {width:e}", found.lower);
@@ -452,8 +469,8 @@ fn flush_contacts_have_narrow_bounds() {
         let half = |n: i32| 0.5 * f64::from(n);
         let from = DVec3::new(half(k % 9) - 1.5, 5.0, half(k / 9) - 1.5);
         let start = Pose::from_translation(from).unwrap();
-        let down = Motion::slide(start, DVec3::new(0.0, -8.0, 0.0)).unwrap();
-        let cast = MotionCast::new(cube.along(&down), step.at(Pose::IDENTITY)).unwrap();
+        let down = Motion::translation(start, DVec3::new(0.0, -8.0, 0.0)).unwrap();
+        let cast = MotionCast::new(cube.with_motion(&down), step.at(Pose::IDENTITY)).unwrap();
         let linear = Cast::new(cube.at(start), step.at(Pose::IDENTITY), DVec3::NEG_Y).unwrap();
         match (
             checked_outcome(&cast, [&down, &rest_motion()]),
@@ -480,11 +497,11 @@ fn prisms_with_equal_cross_sections_have_proven_contact() {
     let post = block([-0.25, -0.25, 0.0], [0.25, 0.25, 0.5]);
     let [plate, column, post] = [&plate, &column, &post].map(solid);
     let pose = |turn: DQuat, x: f64, y: f64, z: f64| Pose::new(turn, DVec3::new(x, y, z)).unwrap();
-    let down = |pose: Pose| Motion::slide(pose, DVec3::new(0.0, 0.0, -4.0)).unwrap();
+    let down = |pose: Pose| Motion::translation(pose, DVec3::new(0.0, 0.0, -4.0)).unwrap();
     let plain = DQuat::IDENTITY;
     // A lid closes about an edge of the column; a plate makes a full turn while it is lowered.
     let open = pose(DQuat::from_rotation_y(-1.0), 0.0, 0.0, 0.0);
-    let lid = Motion::turn(open, DVec3::ZERO, DVec3::Y, 2.0).unwrap();
+    let lid = Motion::rotation_about(open, DVec3::ZERO, DVec3::Y, 2.0).unwrap();
     let whole =
         Motion::screw(pose(plain, 0.0, 0.0, 2.0), DVec3::new(0.5, 0.5, 0.0), DVec3::Z, TAU, -4.0);
     let askew = pose(DQuat::from_rotation_z(FRAC_PI_2), 1.0, 0.0, 1.0);
@@ -495,24 +512,24 @@ fn prisms_with_equal_cross_sections_have_proven_contact() {
         (&plate, lid, 0.5),
         (&plate, whole.unwrap(), 0.5),
     ] {
-        let cast = MotionCast::new(moving.along(&motion), column.at(Pose::IDENTITY)).unwrap();
+        let cast = MotionCast::new(moving.with_motion(&motion), column.at(Pose::IDENTITY)).unwrap();
         let outcome = checked_outcome(&cast, [&motion, &rest_motion()]);
         let MotionOutcome::Contact(found) = &outcome else { panic!("{outcome:?}") };
         assert!(found.lower < time + 1e-11 && found.upper > time - 1e-15, "{found:?}");
         assert!(found.upper - found.lower < 1e-11, "{:e}", found.upper - found.lower);
         // A point that is not inside both is not a proof.
         let met = found.proof.meeting.expect("it is proven");
-        if let FacetsMet::Inside { point } = met.met {
+        if let FacetContactProof::Inside { point } = met.met {
             for (axis, far) in [(0, 2.0), (1, -2.0), (2, 1.0), (2, 1e300), (2, f64::NAN)] {
                 let mut point = point;
                 point[axis] += far;
-                let met = FacetsMet::Inside { point };
+                let met = FacetContactProof::Inside { point };
                 let mut proof = found.proof.clone();
-                proof.meeting = proof.meeting.map(|meeting| FacetsMeeting { met, ..meeting });
+                proof.meeting = proof.meeting.map(|meeting| FacetContact { met, ..meeting });
                 assert!(cast.verify(&proof).is_err(), "{axis} {far}");
             }
             let mut proof = found.proof.clone();
-            proof.meeting = Some(FacetsMeeting { time: found.lower, ..met });
+            proof.meeting = Some(FacetContact { time: found.lower, ..met });
             assert!(cast.verify(&proof).is_err(), "too early");
         }
     }

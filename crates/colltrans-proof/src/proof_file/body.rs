@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::ProofFileError;
 use colltrans_convex::body::ConvexPolyhedron;
-use colltrans_convex::cast::replay::BodyRecord;
+use colltrans_convex::cast::case_file::BodyRecord;
 use colltrans_solid::body::{AsSolid, Solid, SolidError};
 use colltrans_solid::kinds::{AnyBody, AnyPlaced, ByKind};
 
@@ -73,7 +73,7 @@ impl StoredBody {
     pub(super) fn from_file(file: BodyFile, body: usize) -> Result<Self, ProofFileError> {
         match file {
             BodyFile::Convex(record) => {
-                let made = record.body();
+                let made = record.to_body();
                 let made =
                     made.map_err(|error| ProofFileError::Body { body, error: error.into() })?;
                 Ok(Self { body: AnyBody::from(made), pieces: Vec::new() })
@@ -89,7 +89,7 @@ impl StoredBody {
 
     pub(super) fn to_file(&self) -> BodyFile {
         match &self.body {
-            ByKind::Convex(body) => BodyFile::Convex(BodyRecord::of(body)),
+            ByKind::Convex(body) => BodyFile::Convex(BodyRecord::from_body(body)),
             ByKind::Solid(_) => BodyFile::Pieces(self.pieces.clone()),
         }
     }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::motion::{convex_cast, signed_min_gap};
 use colltrans_convex::body::ConvexPolyhedron;
 use colltrans_convex::cast::CaseError;
-use colltrans_convex::cast::replay::BodyRecord;
+use colltrans_convex::cast::case_file::BodyRecord;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_motion::{Motion, MotionCast, Moving};
 
@@ -22,10 +22,10 @@ const FORMAT: &str = "colltrans motion case 1";
 /// use colltrans::{ConvexPolyhedron, Pose};
 ///
 /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-/// let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 2.0)?;
+/// let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 2.0)?;
 /// let cast = MotionCast::new(cube.along(&turn), cube.at(Pose::from_translation(DVec3::X * 1.2)?))?;
 ///
-/// let saved: String = MotionCase::of(&cast).to_json();
+/// let saved: String = MotionCase::from_cast(&cast).to_json();
 /// let case = MotionCase::from_json(&saved)?;
 /// assert_eq!(case.cast().first_contact()?, cast.first_contact()?);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -34,16 +34,16 @@ const FORMAT: &str = "colltrans motion case 1";
 pub struct MotionCase {
     bodies: Box<[ConvexPolyhedron; 2]>,
     motions: [Motion; 2],
-    keep: f64,
+    min_gap: f64,
 }
 
 impl MotionCase {
     /// Copies the query of a cast.
-    pub fn of(cast: &MotionCast) -> Self {
+    pub fn from_cast(cast: &MotionCast) -> Self {
         Self {
             bodies: Box::new(cast.bodies().map(ConvexPolyhedron::clone)),
             motions: cast.motions().map(Motion::clone),
-            keep: signed_min_gap(cast),
+            min_gap: signed_min_gap(cast),
         }
     }
 
@@ -58,7 +58,7 @@ impl MotionCase {
     fn checked_cast(&self) -> Result<MotionCast<'_>, QueryError> {
         let side =
             |k: usize| Moving { body: &self.bodies[k], motion: Cow::Borrowed(&self.motions[k]) };
-        convex_cast([side(0), side(1)], self.keep)
+        convex_cast([side(0), side(1)], self.min_gap)
     }
 
     /// Writes the bodies, their motions and the minimum gap as JSON, exact in bits. [`Self::from_json`] reads
@@ -67,10 +67,10 @@ impl MotionCase {
     /// # Panics
     /// Never panics, because all numbers can be written.
     pub fn to_json(&self) -> String {
-        let [moving, fixed] = self.bodies.each_ref().map(BodyRecord::of);
+        let [moving, fixed] = self.bodies.each_ref().map(BodyRecord::from_body);
         let [moving_motion, fixed_motion] = self.motions.clone();
-        let (format, keep) = (FORMAT.into(), self.keep);
-        let file = File { format, moving, moving_motion, fixed, fixed_motion, keep };
+        let (format, min_gap) = (FORMAT.into(), self.min_gap);
+        let file = File { format, moving, moving_motion, fixed, fixed_motion, min_gap };
         serde_json::to_string(&file).expect("numbers and names can be written")
     }
 
@@ -85,13 +85,13 @@ impl MotionCase {
         if format != FORMAT {
             return Err(CaseError::Format { found: format, known: FORMAT });
         }
-        let File { moving, moving_motion, fixed, fixed_motion, keep, .. } =
+        let File { moving, moving_motion, fixed, fixed_motion, min_gap, .. } =
             serde_json::from_str(text)?;
         let body = |of: BodyRecord, which| {
-            of.body().map_err(|error| CaseError::Body { which, error: error.into() })
+            of.to_body().map_err(|error| CaseError::Body { which, error: error.into() })
         };
         let bodies = Box::new([body(moving, "moving")?, body(fixed, "fixed")?]);
-        let case = Self { bodies, motions: [moving_motion, fixed_motion], keep };
+        let case = Self { bodies, motions: [moving_motion, fixed_motion], min_gap };
         case.checked_cast()?;
         Ok(case)
     }
@@ -111,6 +111,6 @@ struct File {
     moving_motion: Motion,
     fixed: BodyRecord,
     fixed_motion: Motion,
-    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
-    keep: f64,
+    #[serde(default, skip_serializing_if = "colltrans_kernel::serialization::is_zero")]
+    min_gap: f64,
 }

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use colltrans_convex::answer::CertificateError;
-use colltrans_convex::cast::replay::json_error_message;
+use colltrans_convex::cast::case_file::json_error_message;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_motion::MotionProofError;
 use colltrans_motion::path::{PathError, PathProofError};
@@ -115,11 +115,11 @@ pub enum ProofError {
     /// A claim is stronger than the proof.
     #[error(
         "the claimed bounds of the first contact are {} and {}, the proven ones {} and {}",
-        .said[0], .said[1], .proven[0], .proven[1]
+        .claimed[0], .claimed[1], .proven[0], .proven[1]
     )]
-    Said {
+    ClaimTooStrong {
         /// Claimed bounds.
-        said: [f64; 2],
+        claimed: [f64; 2],
         /// Proven bounds.
         proven: [f64; 2],
     },

@@ -71,7 +71,7 @@ pub(super) struct Robot {
 pub(super) struct Link {
     pub(super) body: usize,
     pub(super) name: String,
-    #[serde(deserialize_with = "colltrans_kernel::written::given")]
+    #[serde(deserialize_with = "colltrans_kernel::serialization::required_option")]
     pub(super) frame: Option<usize>,
     pub(super) pose: Pose,
 }
@@ -97,17 +97,17 @@ pub(super) enum Query {
 #[serde(deny_unknown_fields)]
 pub(super) struct Along {
     pub(super) direction: DVec3,
-    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
-    pub(super) keep: f64,
+    #[serde(default, skip_serializing_if = "colltrans_kernel::serialization::is_zero")]
+    pub(super) min_gap: f64,
 }
 
 /// Options of a scene query on which its proof depends.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Choices {
-    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
-    pub(super) keep: f64,
-    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
+    #[serde(default, skip_serializing_if = "colltrans_kernel::serialization::is_zero")]
+    pub(super) min_gap: f64,
+    #[serde(default, skip_serializing_if = "colltrans_kernel::serialization::is_zero")]
     pub(super) graze_tolerance: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) tolerance: Option<f64>,
@@ -118,7 +118,7 @@ pub(super) struct Choices {
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PairOptions {
-    pub(super) keep: f64,
+    pub(super) min_gap: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) tolerance: Option<f64>,
 }
@@ -128,8 +128,8 @@ pub(super) struct PairOptions {
 #[serde(deny_unknown_fields)]
 pub(super) struct Joints {
     pub(super) path: JointPath,
-    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
-    pub(super) keep: f64,
+    #[serde(default, skip_serializing_if = "colltrans_kernel::serialization::is_zero")]
+    pub(super) min_gap: f64,
 }
 
 impl ProofFile {

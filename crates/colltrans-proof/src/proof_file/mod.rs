@@ -26,17 +26,17 @@ use std::collections::HashMap;
 use serde::{Deserialize, Serialize};
 
 use colltrans_convex::answer::{
-    CertificateError, Clearance, ContactRange, Depth, Distance, Outcome, OverlapAhead, Separation,
-    Steps, WhyFree, Within,
+    CertificateError, Clearance, ContactRange, Depth, Distance, FreeReason, Outcome, OverlapAhead,
+    Separation, Steps, Within,
 };
 use colltrans_convex::cast::Cast;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_removal::free::{FreeDirections, FreeError};
+use colltrans_removal::directions::{FreeDirections, FreeError};
 use colltrans_scene::{ClearanceProof, NearbyProof, NearestProof};
 use colltrans_solid::body::Solid;
 use colltrans_solid::kinds::AnyPlaced;
-use colltrans_solid::pair::{DistanceCertificate, Unproven};
+use colltrans_solid::pair::{DistanceCertificate, ProofInput};
 use colltrans_solid::{SolidCast, SolidPairSearch, SolidSteps};
 
 use body::StoredBody;
@@ -141,9 +141,9 @@ impl ProofFile {
         };
         match clearance {
             Clearance::Blocked { contact, .. } => outcome(Outcome::Contact(*contact)),
-            Clearance::Free(WhyFree::Slides(grazing)) => outcome(Outcome::Grazing(*grazing)),
-            Clearance::Free(WhyFree::Separated(of)) => outcome(Outcome::Separated(*of)),
-            Clearance::Free(WhyFree::Behind(last)) => ends(None, Some(last)),
+            Clearance::Free(FreeReason::Slides(grazing)) => outcome(Outcome::Grazing(*grazing)),
+            Clearance::Free(FreeReason::Separated(of)) => outcome(Outcome::Separated(*of)),
+            Clearance::Free(FreeReason::Behind(last)) => ends(None, Some(last)),
             Clearance::Overlapping(OverlapAhead { first, last }) => ends(Some(first), Some(last)),
         }
     }
@@ -151,7 +151,7 @@ impl ProofFile {
     fn of_convex(cast: &Cast<'_>, statement: Statement) -> Self {
         let bodies =
             vec![StoredBody::from_convex(cast.moving()), StoredBody::from_convex(cast.fixed())];
-        let along = Along { direction: cast.direction(), keep: cast.options().keep };
+        let along = Along { direction: cast.direction(), min_gap: cast.options().min_gap };
         let poses = [cast.moving_pose(), cast.fixed_pose()];
         Self { bodies, placement: Placement::of_two(poses), query: Query::Cast(along), statement }
     }
@@ -189,11 +189,12 @@ impl ProofFile {
         let made = RebuiltSolids::rebuild(pieces, [cast.moving(), cast.fixed()])?;
         let [moving, fixed] = made.solids()?;
         let (poses, direction) = ([cast.moving_pose(), cast.fixed_pose()], cast.direction());
-        let keep = cast.options().keep;
-        let options = solid_options(cast.options().start_overlap, cast.tolerance(), keep);
+        let min_gap = cast.options().min_gap;
+        let options = solid_options(cast.options().start_overlap, cast.tolerance(), min_gap);
         let again = Cast::new(moving.at(poses[0]), fixed.at(poses[1]), direction)?;
         let statement = Statement::Clearance(SolidStatement::of(&again.with_options(options)?)?);
-        let (placement, query) = (Placement::of_two(poses), Query::Cast(Along { direction, keep }));
+        let (placement, query) =
+            (Placement::of_two(poses), Query::Cast(Along { direction, min_gap }));
         Ok(Self { bodies: made.0.into(), placement, query, statement })
     }
 
@@ -217,8 +218,9 @@ impl ProofFile {
     /// Computes [`Pair::distance`] of solids and its proof. `pieces` has the meaning that it has for
     /// [`Self::of_solids`].
     ///
-    /// One search suffices unless the tree of a body that is rebuilt from the file differs. Trees of more
-    /// than 4,096 facets may differ. Then the bodies of the file are searched as well.
+    /// The given bodies are searched for the answer. If the tree of a body that is rebuilt from the file
+    /// differs, the bodies of the file are searched as well, for the proof. Trees of more than 4,096 facets
+    /// may differ.
     ///
     /// # Errors
     /// Returns an error for a body that cannot be rebuilt from its own facets.
@@ -226,7 +228,7 @@ impl ProofFile {
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
     ) -> Result<(Distance<Solid>, Self), ProofFileError> {
-        Self::with_search(pair, pieces, |pair| pair.ask(true))
+        Self::with_search(pair, pieces, |pair| pair.distance_with_proof_input(true))
     }
 
     /// Computes [`Pair::within`] of solids for a length, and its proof. See [`Self::with_solid_distance`].
@@ -239,14 +241,14 @@ impl ProofFile {
         pieces: [&[&Solid]; 2],
         length: f64,
     ) -> Result<((Within<Solid>, SolidSteps), Self), ProofFileError> {
-        Self::with_search(pair, pieces, |pair| pair.decide(length, true))
+        Self::with_search(pair, pieces, |pair| pair.within_with_proof_input(length, true))
     }
 
     /// Computes an answer about the given bodies, and its proof about the bodies of the file.
     fn with_search<T>(
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
-        ask: impl Fn(&Pair<'_, Solid>) -> Result<(T, Unproven), QueryError>,
+        ask: impl Fn(&Pair<'_, Solid>) -> Result<(T, ProofInput), QueryError>,
     ) -> Result<(T, Self), ProofFileError> {
         let bodies = [pair.moving(), pair.fixed()];
         let made = RebuiltSolids::rebuild(pieces, bodies)?;
@@ -257,17 +259,20 @@ impl ProofFile {
         if !(bodies[0].has_same_tree(moving) && bodies[1].has_same_tree(fixed)) {
             found = ask(&again)?.1;
         }
-        let statement =
-            Statement::SolidDistance(with_file_facets(again.prove(found)?, [moving, fixed]));
+        let statement = Statement::SolidDistance(with_file_facets(
+            again.prove_lower_bound(found)?,
+            [moving, fixed],
+        ));
         let (placement, query) = (Placement::of_two(poses), Query::Pair);
         Ok((answer, Self { bodies: made.0.into(), placement, query, statement }))
     }
 
-    /// Computes all free directions again, for the bodies as the file contains them. `pieces` has the meaning
-    /// that it has for [`Self::of_solids`].
+    /// Computes the free directions again, for bodies that are rebuilt from the file, and their proof.
+    /// `pieces` has the meaning that it has for [`Self::of_solids`].
     ///
     /// # Errors
-    /// Returns an error for a body that cannot be rebuilt from its own facets.
+    /// Returns an error for a body that cannot be rebuilt from its own facets, or if the free directions of
+    /// the rebuilt bodies cannot be computed.
     pub fn of_free_directions(
         free: &FreeDirections<'_>,
         pieces: [&[&Solid]; 2],
@@ -277,11 +282,11 @@ impl ProofFile {
         let [moving, fixed] = made.solids()?;
         let poses = [cast.moving_pose(), cast.fixed_pose()];
         let options = free.options().with_tolerance(free.tolerance());
-        let again = FreeDirections::of(&moving.at(poses[0]), &fixed.at(poses[1]), options);
+        let again = FreeDirections::compute(&moving.at(poses[0]), &fixed.at(poses[1]), options);
         let statement = match again {
             Ok(again) => FreeStatement::of(&again, [moving, fixed]),
             Err(FreeError::Query(error)) => return Err(error.into()),
-            Err(_) => Err(CertificateError::Start),
+            Err(_) => Err(CertificateError::StartClaim),
         };
         let statement = statement.map_err(|_| ProofFileError::Changed { body: 0 })?;
         let statement = Statement::FreeDirections(statement);
@@ -299,7 +304,7 @@ impl ProofFile {
     /// ([`ShrinkReport::inverted`](colltrans_solid::ShrinkReport::inverted)). At these facets the statement
     /// about the offset solids does not describe the original ones. A body that several pairs or places share
     /// counts once on each side.
-    pub fn inverted(&self) -> [usize; 2] {
+    pub fn inverted_facets(&self) -> [usize; 2] {
         // The largest tolerance of each body on each side.
         let mut offset: [HashMap<usize, f64>; 2] = Default::default();
         let mut add = |side: usize, body: usize, tolerance: f64| {
@@ -336,13 +341,14 @@ impl ProofFile {
         offset.map(|side| side.iter().filter_map(inverted).sum())
     }
 
-    /// Returns the minimum gap of the bodies of a cast, in world units; 0 if they may touch.
-    pub const fn keep(&self) -> f64 {
-        if let Query::Cast(along) = &self.query { along.keep } else { 0.0 }
+    /// Returns the minimum gap of a query along a direction, in world units; 0 if the bodies may touch, and
+    /// for all other queries.
+    pub const fn min_gap(&self) -> f64 {
+        if let Query::Cast(along) = &self.query { along.min_gap } else { 0.0 }
     }
 
     /// Returns the number of obstacles of a scene, and `None` for other queries.
-    pub fn obstacles(&self) -> Option<usize> {
+    pub fn obstacle_count(&self) -> Option<usize> {
         match (&self.query, &self.placement) {
             (Query::Scene(_), Placement::Poses(places)) => places.len().checked_sub(1),
             _ => None,

@@ -13,7 +13,7 @@ use super::{ProofFile, Statement};
 use colltrans_convex::body::Body;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_motion::{
-    MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving, Parts, SolidMotionProof,
+    MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving, ProofFacets, SolidMotionProof,
 };
 use colltrans_solid::body::Solid;
 use colltrans_solid::cast::StartProof;
@@ -35,7 +35,7 @@ pub enum MotionStatement {
 pub struct SolidMotionStatement {
     /// Trees of both solids, for checkers that do not build trees. A check compares them with the trees of
     /// the bodies.
-    parts: [Parts; 2],
+    parts: [ProofFacets; 2],
     /// The proof.
     pub proof: SolidMotionProof,
 }
@@ -49,16 +49,16 @@ pub(super) enum PairCast<'a> {
 
 /// Returns the minimum gap minus the tolerated depth.
 pub(super) fn signed_min_gap(cast: &MotionCast<'_>) -> f64 {
-    cast.keep() - cast.tolerance()
+    cast.min_gap() - cast.tolerance()
 }
 
-/// Builds the query about convex bodies with a minimum gap, or with a tolerated depth if `keep` is negative.
+/// Builds the query about convex bodies with a minimum gap, or with a tolerated depth if `min_gap` is negative.
 pub(super) fn convex_cast(
     [moving, fixed]: [Moving<'_>; 2],
-    keep: f64,
+    min_gap: f64,
 ) -> Result<MotionCast<'_>, QueryError> {
     let cast = MotionCast::new(moving, fixed)?;
-    if keep < 0.0 { cast.tolerating(-keep) } else { cast.keeping(keep) }
+    if min_gap < 0.0 { cast.with_tolerance(-min_gap) } else { cast.with_min_gap(min_gap) }
 }
 
 /// Proofs of queries about motions.
@@ -69,7 +69,7 @@ pub(super) fn convex_cast(
 /// use colltrans::{ConvexPolyhedron, Pose, ProofFile};
 ///
 /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-/// let motion = Motion::slide(Pose::IDENTITY, DVec3::X * 4.0)?;
+/// let motion = Motion::translation(Pose::IDENTITY, DVec3::X * 4.0)?;
 /// let mut proofs = Vec::new();
 /// for x in [3.0, 2.0, 6.0] {
 ///     let cast = MotionCast::new(cube.along(&motion), cube.at(Pose::from_translation(DVec3::X * x)?))?;
@@ -79,8 +79,8 @@ pub(super) fn convex_cast(
 /// let [lower, upper] = ProofFile::from_json(&saved)?.check()?.time().expect("bounds");
 /// assert!(lower <= 0.25 && 0.25 <= upper && upper - lower < 1e-12);
 ///
-/// let there = Motion::still(Pose::from_translation(DVec3::new(3.0, 0.25, 0.375))?);
-/// let cast = MotionCast::between(cube.along(&motion), cube.along(&there))?;
+/// let there = Motion::at_rest(Pose::from_translation(DVec3::new(3.0, 0.25, 0.375))?);
+/// let cast = MotionCast::between_any(cube.along(&motion), cube.along(&there))?;
 /// let (_, saved) = ProofFile::with_solid_motion(&cast)?;
 /// let [lower, upper] = ProofFile::from_json(&saved.to_json())?.check()?.time().expect("bounds");
 /// assert!((lower - 0.5).abs() < 1e-11 && upper - lower < 1e-11);
@@ -92,12 +92,12 @@ impl ProofFile {
     /// [`Self::with_solid_motion`].
     pub fn of_motion(cast: &MotionCast<'_>, outcome: &MotionOutcome) -> Self {
         let proof = outcome.proof();
-        let solids = || Some(Self::with_solid_motion(&cast.between_solids().ok()?).ok()?.1);
+        let solids = || Some(Self::with_solid_motion(&cast.as_solid_cast().ok()?).ok()?.1);
         if let Some(file) = proof.solids.as_ref().and_then(|_| solids()) {
             return file;
         }
         let bodies = cast.bodies().map(StoredBody::from_convex).into();
-        let pair_options = PairOptions { keep: signed_min_gap(cast), tolerance: None };
+        let pair_options = PairOptions { min_gap: signed_min_gap(cast), tolerance: None };
         Self::of_pair_of_motions(bodies, cast, pair_options, MotionStatement::Convex(proof.clone()))
     }
 
@@ -110,17 +110,18 @@ impl ProofFile {
     pub fn with_solid_motion(
         cast: &MotionCast<'_, Solid>,
     ) -> Result<(MotionOutcome<SolidMotionProof>, Self), ProofFileError> {
-        let placed = |k: usize| cast.bodies()[k].at(cast.motions()[k].pieces()[0].start);
+        let placed = |k: usize| cast.bodies()[k].at(cast.motions()[k].pieces()[0].start_pose);
         let stored = |k: usize| StoredBody::rebuild(ByKind::Solid(placed(k)), k);
         let bodies = [stored(0)?, stored(1)?];
-        let pair_options = PairOptions { keep: cast.keep(), tolerance: cast.given_tolerance() };
+        let pair_options =
+            PairOptions { min_gap: cast.min_gap(), tolerance: cast.given_tolerance() };
         let side = |k: usize| -> Result<Moving<'_, Solid>, ProofFileError> {
             let body = bodies[k].as_solid().ok_or(ProofFileError::Changed { body: k })?;
             Ok(Moving { body, motion: Cow::Borrowed(cast.motions()[k]) })
         };
         let again = solid_cast([side(0)?, side(1)?], pair_options)?;
         let outcome = again.certified_first_contact()?;
-        let (parts, proof) = (again.parts(), outcome.proof().clone());
+        let (parts, proof) = (again.proof_facets(), outcome.proof().clone());
         let statement = MotionStatement::Solids(SolidMotionStatement { parts, proof });
         let file = Self::of_pair_of_motions(bodies.clone().into(), cast, pair_options, statement);
         Ok((outcome, file))
@@ -199,9 +200,10 @@ impl ProofFile {
         let (least, is_alone) = (least_gap(pair_options), pair_options.len() == 1);
         let mut casts = Vec::with_capacity(pair_options.len());
         for (pair, (statement, pair_options)) in statements.iter().zip(pair_options).enumerate() {
-            // Bodies that keep a larger gap also keep this one. The same holds for solids that replace convex bodies.
+            // All convex pairs need the same minimum gap. Solids may have a larger one, because bodies that
+            // keep a larger gap also keep this one.
             let is_of_question = match statement {
-                MotionStatement::Convex(_) => pair_options.keep == least,
+                MotionStatement::Convex(_) => pair_options.min_gap == least,
                 MotionStatement::Solids(of) => is_alone || of.proof.tolerance == 0.0,
             };
             if !is_of_question {
@@ -228,7 +230,7 @@ impl ProofFile {
                 let [moving, fixed] = motions;
                 let sides =
                     [Moving { body: &**p, motion: moving }, Moving { body: &**q, motion: fixed }];
-                PairCast::Convex(convex_cast(sides, pair_options.keep)?)
+                PairCast::Convex(convex_cast(sides, pair_options.min_gap)?)
             }
             (MotionStatement::Solids(_), ByKind::Solid(p), ByKind::Solid(q)) => {
                 let [moving, fixed] = motions;
@@ -261,7 +263,7 @@ impl PairCast<'_> {
         match (self, statement) {
             (Self::Convex(cast), MotionStatement::Convex(proof)) => Ok(cast.verify(proof)?),
             (Self::Solids(cast, bodies), MotionStatement::Solids(of)) => {
-                let parts = cast.parts();
+                let parts = cast.proof_facets();
                 if let Some(k) = (0..2).find(|k| parts[*k] != of.parts[*k]) {
                     return Err(ProofError::Parts { body: bodies[k] });
                 }
@@ -274,7 +276,7 @@ impl PairCast<'_> {
 
 /// Returns the smallest minimum gap.
 fn least_gap(pair_options: &[PairOptions]) -> f64 {
-    pair_options.iter().map(|of| of.keep).fold(f64::INFINITY, f64::min)
+    pair_options.iter().map(|of| of.min_gap).fold(f64::INFINITY, f64::min)
 }
 
 /// Returns the smallest times of all pairs. A contact at a larger gap than the smallest one does not count as
@@ -282,7 +284,7 @@ fn least_gap(pair_options: &[PairOptions]) -> f64 {
 fn first_times(pair_options: &[PairOptions], times: &[[f64; 2]]) -> [f64; 2] {
     let least = least_gap(pair_options);
     pair_options.iter().zip(times).fold([1.0, f64::INFINITY], |[lower, upper], (of, [l, u])| {
-        let u = if of.keep == least { *u } else { f64::INFINITY };
+        let u = if of.min_gap == least { *u } else { f64::INFINITY };
         [f64::min(lower, *l), f64::min(upper, u)]
     })
 }
@@ -315,9 +317,9 @@ impl MotionStatement {
     }
 
     /// Returns the statement about one pair as text.
-    fn text(&self, keep: f64) -> String {
+    fn text(&self, min_gap: f64) -> String {
         let (reached, meeting) = self.claimed_times();
-        let meet = contact_verb(keep);
+        let meet = contact_verb(min_gap);
         let bodies = match self {
             Self::Convex(_) => "the bodies ".into(),
             Self::Solids(of) => {
@@ -343,7 +345,7 @@ impl MotionStatement {
 /// Returns the statement about all pairs as text.
 pub(super) fn text(pair_options: &[PairOptions], statements: &[MotionStatement]) -> String {
     if let ([pair_options], [statement]) = (pair_options, statements) {
-        return statement.text(pair_options.keep);
+        return statement.text(pair_options.min_gap);
     }
     let claimed = statements.iter().map(|of| {
         let (reached, meeting) = of.claimed_times();
@@ -364,10 +366,10 @@ pub(super) fn text(pair_options: &[PairOptions], statements: &[MotionStatement])
 }
 
 /// Returns the verb of a contact as text, with the minimum gap or the tolerated depth.
-fn contact_verb(keep: f64) -> String {
-    match keep {
-        keep if keep > 0.0 => format!("come as near as {keep:?}"),
-        keep if keep < 0.0 => format!("overlap by more than {:?}", -keep),
+fn contact_verb(min_gap: f64) -> String {
+    match min_gap {
+        min_gap if min_gap > 0.0 => format!("come as near as {min_gap:?}"),
+        min_gap if min_gap < 0.0 => format!("overlap by more than {:?}", -min_gap),
         _ => "meet".into(),
     }
 }
@@ -375,11 +377,11 @@ fn contact_verb(keep: f64) -> String {
 /// Builds the query about solids.
 fn solid_cast(
     [moving, fixed]: [Moving<'_, Solid>; 2],
-    PairOptions { keep, tolerance }: PairOptions,
+    PairOptions { min_gap, tolerance }: PairOptions,
 ) -> Result<MotionCast<'_, Solid>, QueryError> {
-    let cast = MotionCast::<Solid>::new(moving, fixed)?.keeping(keep)?;
+    let cast = MotionCast::<Solid>::new(moving, fixed)?.with_min_gap(min_gap)?;
     match tolerance {
-        Some(tolerance) => cast.tolerating(tolerance),
+        Some(tolerance) => cast.with_tolerance(tolerance),
         None => Ok(cast),
     }
 }

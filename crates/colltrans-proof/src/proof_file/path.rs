@@ -26,11 +26,11 @@ const MAX_NAMED: usize = 12;
 pub struct PathStatement {
     /// Names of both bodies of each pair.
     pub pairs: Vec<[String; 2]>,
-    /// Time before which no pair meets. At the end of the path it includes this time if no contact is
-    /// claimed.
+    /// Time before which no pair meets. If it is the end of the path and no contact is claimed, no pair meets
+    /// at this time either.
     pub lower: f64,
     /// Time by which the pair of [`PathProof::meeting`] meets; infinite if no contact is claimed.
-    #[serde(with = "colltrans_kernel::written::or_infinite")]
+    #[serde(with = "colltrans_kernel::serialization::null_as_infinity")]
     pub upper: f64,
     /// Tree of each solid of the file, for checkers that do not build trees. A check compares it with the
     /// tree of the body.
@@ -63,7 +63,7 @@ impl<'a> PathSetting<'a> {
         let carried = robot.bodies.iter().map(carried).collect::<Result<_, ProofFileError>>()?;
         let pairs = pair_indices(pairs, &robot.bodies)?;
         let cast = PathCast::new(&robot.frames, &joints.path, carried, pairs)?;
-        Ok(Self { bodies, cast: cast.keeping(joints.keep)? })
+        Ok(Self { bodies, cast: cast.with_min_gap(joints.min_gap)? })
     }
 }
 
@@ -80,7 +80,7 @@ impl Verify<'_, PathSetting<'_>> for PathStatement {
         if claimed[0] <= proven[0] && proven[1] <= claimed[1] {
             return Ok(Proven::Time(proven));
         }
-        Err(ProofError::Said { said: claimed, proven })
+        Err(ProofError::ClaimTooStrong { claimed, proven })
     }
 }
 
@@ -94,9 +94,9 @@ impl Verify<'_, PathSetting<'_>> for PathStatement {
 /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
 /// let frame = Frame { parent: None, origin: Pose::IDENTITY, joint: Joint::Sliding(DVec3::X) };
 /// let slide = Mechanism::new(vec![frame])?;
-/// let path = JointPath::evenly(vec![vec![0.0], vec![4.0]])?;
+/// let path = JointPath::at_unit_times(vec![vec![0.0], vec![4.0]])?;
 /// let there = Pose::from_translation(DVec3::X * 3.0)?;
-/// let bodies = vec![PathBody::carried(0, cube.at(Pose::IDENTITY)), PathBody::standing(cube.at(there))];
+/// let bodies = vec![PathBody::carried_by(0, cube.at(Pose::IDENTITY)), PathBody::at_rest(cube.at(there))];
 /// let cast = PathCast::new(&slide, &path, bodies, vec![[0, 1]])?;
 /// let names = ["cart".into(), "stop".into()];
 /// let (_, saved) = ProofFile::with_path(&cast, &names)?;
@@ -118,13 +118,13 @@ impl ProofFile {
     ) -> Result<(PathOutcome, Self), ProofFileError> {
         let names = distinct_names(cast.bodies().count(), names);
         let (mut bodies, mut links) = (Vec::new(), Vec::new());
-        for (body, (of, name)) in cast.carried_bodies().zip(&names).enumerate() {
+        for (body, (of, name)) in cast.bodies_with_frames().zip(&names).enumerate() {
             let (name, frame, pose) = (name.clone(), of.frame, of.placed.pose());
             bodies.push(StoredBody::rebuild(of.placed, body)?);
             links.push(Link { body, name, frame, pose });
         }
         let robot = Robot { frames: cast.mechanism().clone(), bodies: links };
-        let joints = Joints { path: cast.path().clone(), keep: cast.keep() };
+        let joints = Joints { path: cast.path().clone(), min_gap: cast.min_gap() };
         let pairs: Vec<_> =
             cast.pairs().iter().map(|pair| pair.map(|k| names[k].clone())).collect();
         let outcome = PathSetting::new(&bodies, &robot, &joints, &pairs)?.cast.first_contact()?;
@@ -133,7 +133,7 @@ impl ProofFile {
             // The file contains these bodies as solids, like the proof.
             return Self::with_path(&cast.with_solids(&proof.solids), &names);
         }
-        let [from, to] = joints.path.ends();
+        let [from, to] = joints.path.time_range();
         let [lower, upper] = match &outcome {
             PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Undecided(of) => {
                 [of.lower, of.upper]
@@ -150,7 +150,7 @@ impl ProofFile {
 
     /// Returns the query of a proof about a path, and the names of the bodies. Returns `None` for other
     /// proofs.
-    pub fn path(&self) -> Option<(PathCast<'_>, Vec<String>)> {
+    pub fn path_query(&self) -> Option<(PathCast<'_>, Vec<String>)> {
         let (Placement::Robot(robot), Query::Path(joints), Statement::Path(of)) =
             (&self.placement, &self.query, &self.statement)
         else {
@@ -198,8 +198,8 @@ fn pair_indices(pairs: &[[String; 2]], links: &[Link]) -> Result<Vec<[usize; 2]>
 impl PathStatement {
     /// Writes the statement as text.
     pub(super) fn write_text(&self, f: &mut fmt::Formatter<'_>, joints: &Joints) -> fmt::Result {
-        let meet = match joints.keep {
-            keep if keep > 0.0 => format!("come as near as {keep:?}"),
+        let meet = match joints.min_gap {
+            min_gap if min_gap > 0.0 => format!("come as near as {min_gap:?}"),
             _ => "meet".into(),
         };
         let Self { pairs, lower, upper, proof, .. } = self;
@@ -207,9 +207,9 @@ impl PathStatement {
         let first: Vec<String> = pairs.iter().take(MAX_NAMED).map(named).collect();
         let more = if pairs.len() > MAX_NAMED { ", ..." } else { "" };
         write!(f, "of {} pairs ({}{more}) ", pairs.len(), first.join(", "))?;
-        let [from, to] = joints.path.ends();
+        let [from, to] = joints.path.time_range();
         let meeting = proof.meeting.as_ref().and_then(|meeting| pairs.get(meeting.pair));
-        let is_whole = *lower == to && proof.is_of_the_beginning();
+        let is_whole = *lower == to && proof.proves_start();
         match meeting {
             None if is_whole => write!(f, "none {meet} on the whole path, up to the time {lower}"),
             None if from == to => f.write_str("no claim is made"),
@@ -244,7 +244,7 @@ impl StoredTree {
             if nodes[at].is_leaf() {
                 tree.push(nodes[at].facets().len() as i64);
             } else {
-                let first = at + nodes[at].skip as usize;
+                let first = at + nodes[at].child_offset as usize;
                 tree.push(-1);
                 open.extend([first + 1, first]);
             }

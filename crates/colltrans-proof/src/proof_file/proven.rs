@@ -1,7 +1,7 @@
 //! The trait of statements that can be checked, and results of checks.
 
 use super::error::ProofError;
-use colltrans_removal::free::FreeDirections;
+use colltrans_removal::directions::FreeDirections;
 
 /// Statement that can be checked against its query and bodies.
 pub trait Verify<'a, Setting> {
@@ -34,7 +34,7 @@ impl std::fmt::Debug for Proven<'_> {
 
 impl Proven<'_> {
     /// Returns the bounds of the time of the first contact, and `None` for other proofs.
-    pub const fn time(&self) -> Option<[f64; 2]> {
+    pub const fn time_bounds(&self) -> Option<[f64; 2]> {
         if let Self::Time(bounds) = self { Some(*bounds) } else { None }
     }
 }

@@ -14,19 +14,19 @@ use super::proven::{Proven, Verify};
 use super::{ProofFile, Statement};
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::solve::options::Options;
-use colltrans_scene::{Among, AmongProof, Obstacles};
+use colltrans_scene::{Obstacles, SceneProof, SceneQuery};
 use colltrans_solid::cast::SolidOptions;
 use colltrans_solid::kinds::{AnyBody, AnyPlaced};
 
 /// One body in a scene, with the options of the query.
 #[derive(Debug)]
-pub(super) struct SceneQuery<'a> {
+pub(super) struct PlacedScene<'a> {
     moving: AnyPlaced<'a>,
     obstacles: Obstacles,
     choices: Choices,
 }
 
-impl<'a> SceneQuery<'a> {
+impl<'a> PlacedScene<'a> {
     /// Builds the scene. The moving body is in the first place.
     pub(super) fn new(
         bodies: &'a [StoredBody],
@@ -43,24 +43,25 @@ impl<'a> SceneQuery<'a> {
         Ok(scene)
     }
 
-    fn checked_query(&self) -> Result<Among<'_>, QueryError> {
-        let Choices { keep, graze_tolerance, tolerance, start_overlap } = self.choices;
+    fn checked_query(&self) -> Result<SceneQuery<'_>, QueryError> {
+        let Choices { min_gap, graze_tolerance, tolerance, start_overlap } = self.choices;
         if let Some(tolerance) = tolerance.filter(|by| !(0.0..f64::INFINITY).contains(by)) {
             return Err(QueryError::Tolerance { tolerance });
         }
-        let options = Options::default().with_keep(keep).with_graze_tolerance(graze_tolerance);
-        let of_solids = SolidOptions::default().with_keep(keep).with_tolerance(tolerance);
-        Ok(Among::new(self.moving, &self.obstacles)?
+        let options =
+            Options::default().with_min_gap(min_gap).with_graze_tolerance(graze_tolerance);
+        let of_solids = SolidOptions::default().with_min_gap(min_gap).with_tolerance(tolerance);
+        Ok(SceneQuery::new(self.moving, &self.obstacles)?
             .with_options(options)?
             .with_solid_options(of_solids.with_start_overlap(start_overlap)))
     }
 }
 
-impl<'s, P> Verify<'_, SceneQuery<'s>> for P
+impl<'s, P> Verify<'_, PlacedScene<'s>> for P
 where
-    for<'p> AmongProof<'p>: From<&'p P>,
+    for<'p> SceneProof<'p>: From<&'p P>,
 {
-    fn verify(&self, scene: &SceneQuery<'s>) -> Result<Proven<'static>, ProofError> {
+    fn verify(&self, scene: &PlacedScene<'s>) -> Result<Proven<'static>, ProofError> {
         scene.checked_query()?.verify(self)?;
         Ok(Proven::Statement)
     }
@@ -73,13 +74,13 @@ where
 ///
 /// ```
 /// use colltrans::glam::DVec3;
-/// use colltrans::{Among, ConvexPolyhedron, Obstacles, Pose, ProofFile};
+/// use colltrans::{SceneQuery, ConvexPolyhedron, Obstacles, Pose, ProofFile};
 ///
 /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
 /// let mut room = Obstacles::new();
 /// room.insert(cube.clone(), Pose::from_translation(DVec3::X * 9.0)?);
 /// room.insert(cube.clone(), Pose::from_translation(DVec3::Y * 4.0)?);
-/// let asked = Among::new(cube.at(Pose::IDENTITY), &room)?;
+/// let asked = SceneQuery::new(cube.at(Pose::IDENTITY), &room)?;
 ///
 /// let saved = ProofFile::of_nearest(&asked)?.expect("there are some").to_json();
 /// let proof = ProofFile::from_json(&saved)?;
@@ -89,38 +90,41 @@ where
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 impl ProofFile {
-    /// Proves by [`Among::certified_nearest`] that no obstacle is nearer than the nearest one. Returns `None`
+    /// Proves by [`SceneQuery::certified_nearest`] that no obstacle is nearer than the nearest one. Returns `None`
     /// without obstacles.
     ///
     /// # Errors
-    /// Returns the errors of [`Among::nearest`], and an error for a solid that cannot be rebuilt from its own
+    /// Returns the errors of [`SceneQuery::nearest`], and an error for a solid that cannot be rebuilt from its own
     /// facets.
-    pub fn of_nearest(among: &Among<'_>) -> Result<Option<Self>, ProofFileError> {
+    pub fn of_nearest(among: &SceneQuery<'_>) -> Result<Option<Self>, ProofFileError> {
         let stored = StoredScene::of_scene(among)?;
-        let proven = stored.scene_query()?.checked_query()?.certified_nearest()?;
+        let proven = stored.placed_scene()?.checked_query()?.certified_nearest()?;
         Ok(proven.map(|(_, proof)| stored.with_statement(Statement::Nearest(proof))))
     }
 
-    /// Proves by [`Among::certified_within`] which obstacles are closer than a length.
+    /// Proves by [`SceneQuery::certified_within`] which obstacles are closer than a length.
     ///
     /// # Errors
-    /// Returns the errors of [`Among::within`], and an error for a solid that cannot be rebuilt from its own
+    /// Returns the errors of [`SceneQuery::within`], and an error for a solid that cannot be rebuilt from its own
     /// facets.
-    pub fn of_within(among: &Among<'_>, length: f64) -> Result<Self, ProofFileError> {
+    pub fn of_within(among: &SceneQuery<'_>, length: f64) -> Result<Self, ProofFileError> {
         let stored = StoredScene::of_scene(among)?;
-        let (_, proof) = stored.scene_query()?.checked_query()?.certified_within(length)?;
+        let (_, proof) = stored.placed_scene()?.checked_query()?.certified_within(length)?;
         Ok(stored.with_statement(Statement::Within(proof)))
     }
 
-    /// Proves by [`Among::certified_clearance`] which obstacle blocks the moving body, and that none blocks
+    /// Proves by [`SceneQuery::certified_clearance`] which obstacle blocks the moving body, and that none blocks
     /// it earlier.
     ///
     /// # Errors
-    /// Returns the errors of [`Among::clearance`], and an error for a solid that cannot be rebuilt from its
+    /// Returns the errors of [`SceneQuery::clearance`], and an error for a solid that cannot be rebuilt from its
     /// own facets.
-    pub fn of_scene_clearance(among: &Among<'_>, direction: DVec3) -> Result<Self, ProofFileError> {
+    pub fn of_scene_clearance(
+        among: &SceneQuery<'_>,
+        direction: DVec3,
+    ) -> Result<Self, ProofFileError> {
         let stored = StoredScene::of_scene(among)?;
-        let (_, proof) = stored.scene_query()?.checked_query()?.certified_clearance(direction)?;
+        let (_, proof) = stored.placed_scene()?.checked_query()?.certified_clearance(direction)?;
         Ok(stored.with_statement(Statement::SceneClearance(proof)))
     }
 }
@@ -133,11 +137,11 @@ struct StoredScene {
 }
 
 impl StoredScene {
-    fn of_scene(among: &Among<'_>) -> Result<Self, ProofFileError> {
+    fn of_scene(among: &SceneQuery<'_>) -> Result<Self, ProofFileError> {
         let mut bodies = vec![StoredBody::rebuild(among.moving(), 0)?];
         let mut places = vec![Place { body: 0, pose: among.moving_pose() }];
         let mut known: HashMap<*const u8, usize> = HashMap::new();
-        for (any, pose) in among.asked_in_order() {
+        for (any, pose) in among.queried_in_order() {
             let address = match any {
                 AnyBody::Convex(body) => Arc::as_ptr(body).cast(),
                 AnyBody::Solid(body) => Arc::as_ptr(body).cast(),
@@ -150,7 +154,7 @@ impl StoredScene {
         }
         let (options, solid_options) = (among.options(), among.solid_options());
         let choices = Choices {
-            keep: options.keep.max(solid_options.keep),
+            min_gap: options.min_gap.max(solid_options.min_gap),
             graze_tolerance: options.graze_tolerance,
             tolerance: solid_options.tolerance,
             start_overlap: solid_options.start_overlap,
@@ -158,8 +162,8 @@ impl StoredScene {
         Ok(Self { bodies, places, choices })
     }
 
-    fn scene_query(&self) -> Result<SceneQuery<'_>, ProofFileError> {
-        SceneQuery::new(&self.bodies, &self.places, self.choices)
+    fn placed_scene(&self) -> Result<PlacedScene<'_>, ProofFileError> {
+        PlacedScene::new(&self.bodies, &self.places, self.choices)
     }
 
     fn with_statement(self, statement: Statement) -> ProofFile {

@@ -12,10 +12,10 @@ use colltrans_convex::answer::{
 };
 use colltrans_convex::body::{InputFacet, Placed};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::cast::sideways::{proven_overlap, verified_overlap};
+use colltrans_convex::cast::shadow_overlap::{proven_overlap, verified_overlap};
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_removal::free::{CellProof, FreeDirections, FreeError, FreeProof, InnerBox};
+use colltrans_removal::directions::{CellProof, FreeDirections, FreeError, FreeProof, InnerBox};
 use colltrans_solid::SolidCast;
 use colltrans_solid::body::Solid;
 use colltrans_solid::cast::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
@@ -92,8 +92,8 @@ pub struct Slide {
     /// Unit normal in the world frame, orthogonal to the direction, from the moving body to the fixed one:
     /// [`Grazing::separating_direction`].
     pub normal: DVec3,
-    /// Upper bound of `max_P n.p - min_Q n.q`, a length, over all positions of the moving body near the fixed
-    /// one, increased by the minimum gap. It is negative if the bodies miss each other.
+    /// Upper bound of the overlap of the bodies' shadows along `normal`, increased by the minimum gap, a
+    /// length. If it is negative, the shadows are farther apart than the minimum gap.
     pub overlap: f64,
 }
 
@@ -120,7 +120,8 @@ pub struct Stop {
     /// Indices of the facets in the file, of the moving and of the fixed body, numbered across pieces.
     pub facets: [InputFacet; 2],
     /// Contact in nominal position:
-    /// [`SolidContact::translation`](colltrans_solid::SolidContact::translation).
+    /// [`SolidContact::translation`](colltrans_solid::SolidContact::translation). The bounds also enclose
+    /// those that a check of the two facets proves.
     pub translation: Bounded,
 }
 
@@ -169,10 +170,10 @@ impl Contacts {
 pub(super) fn solid_options(
     start_overlap: StartOverlap,
     tolerance: f64,
-    keep: f64,
+    min_gap: f64,
 ) -> SolidOptions {
     let options = SolidOptions::default().with_start_overlap(start_overlap);
-    options.with_tolerance(tolerance).with_keep(keep)
+    options.with_tolerance(tolerance).with_min_gap(min_gap)
 }
 
 impl Verify<'_, Cast<'_>> for Contacts {
@@ -214,7 +215,7 @@ impl Verify<'_, Pair<'_, Solid>> for DistanceCertificate {
             let facets = [pair.moving(), pair.fixed()][k].facet_indices();
             facets.iter().position(|known| known.0 == facet).map(|at| at as u32)
         };
-        let near = rename_triangles(self.near, place).ok_or(CertificateError::Start)?;
+        let near = rename_triangles(self.near, place).ok_or(CertificateError::StartClaim)?;
         pair.verify(&Self { near, ..self.clone() })?;
         Ok(Proven::Statement)
     }
@@ -246,8 +247,8 @@ pub(super) type SolidsAlong<'a> = ([Placed<'a, Solid>; 2], Along);
 
 impl Verify<'_, SolidsAlong<'_>> for SolidStatement {
     fn verify(&self, about: &SolidsAlong<'_>) -> Result<Proven<'static>, ProofError> {
-        let ([moving, fixed], Along { direction, keep }) = *about;
-        let options = solid_options(self.start_overlap, self.certificate.tolerance, keep);
+        let ([moving, fixed], Along { direction, min_gap }) = *about;
+        let options = solid_options(self.start_overlap, self.certificate.tolerance, min_gap);
         self.check(&Cast::new(moving, fixed, direction)?.with_options(options)?)?;
         Ok(Proven::Statement)
     }
@@ -268,7 +269,7 @@ impl FreeStatement {
         let FreeProof { tolerance, start_overlap, boxes, cells } = free.proof();
         let number = |k: usize, triangle: u32| made[k].facet_indices()[triangle as usize].0;
         let to_file = |pair: [u32; 2]| Some([number(0, pair[0]), number(1, pair[1])]);
-        let cells = rename_facets(&cells, to_file).ok_or(CertificateError::Start)?;
+        let cells = rename_facets(&cells, to_file).ok_or(CertificateError::StartClaim)?;
         let shrunk = offset_vertices(made, tolerance)?;
         Ok(Self { tolerance, start_overlap, shrunk, boxes, cells })
     }
@@ -280,7 +281,7 @@ impl FreeStatement {
     ) -> Result<FreeDirections<'a>, CertificateError> {
         let bodies = [moving.body, fixed.body];
         if self.shrunk != offset_vertices(bodies, self.tolerance)? {
-            return Err(CertificateError::Start);
+            return Err(CertificateError::StartClaim);
         }
         let places = bodies.map(|body| {
             let mut places = vec![None; body.input_counts()[1] as usize];
@@ -291,13 +292,13 @@ impl FreeStatement {
         });
         let place = |k: usize, facet: u32| *places[k].get(facet as usize)?;
         let to_place = |pair: [u32; 2]| Some([place(0, pair[0])?, place(1, pair[1])?]);
-        let cells = rename_facets(&self.cells, to_place).ok_or(CertificateError::Start)?;
+        let cells = rename_facets(&self.cells, to_place).ok_or(CertificateError::StartClaim)?;
         let Self { tolerance, start_overlap, .. } = *self;
         let proof = FreeProof { tolerance, start_overlap, boxes: self.boxes.clone(), cells };
         FreeDirections::from_proof(&moving, &fixed, &proof).map_err(|error| match error {
             FreeError::Query(error) => error.into(),
             FreeError::NotProven(error) => error,
-            _ => CertificateError::Start,
+            _ => CertificateError::StartClaim,
         })
     }
 }
@@ -340,7 +341,7 @@ fn offset_vertices(
     let vertices = |body: &Solid| body.shrunk(tolerance / 2.0).map(|of| of.0.vertices().to_vec());
     match bodies.map(vertices) {
         [Ok(moving), Ok(fixed)] => Ok(Some([moving, fixed])),
-        _ => Err(CertificateError::Start),
+        _ => Err(CertificateError::StartClaim),
     }
 }
 
@@ -371,12 +372,14 @@ impl SolidStatement {
             (None, None) => return Ok(()),
             (Some(stop), Some(proof)) => (stop, proof.triangles),
             (Some(stop), None) => return Err(stop.other_facets_error()),
-            (None, Some(proof)) => return Err(CertificateError::triangles(proof.triangles)),
+            (None, Some(proof)) => {
+                return Err(CertificateError::blocking_triangles(proof.triangles));
+            }
         };
         if input_facets(cast, triangles) != Some(stop.facets) {
             return Err(stop.other_facets_error());
         }
-        let refused = CertificateError::triangles(triangles);
+        let refused = CertificateError::blocking_triangles(triangles);
         let proven = proven_translation(cast, &self.certificate, triangles).ok_or(refused)?;
         let Bounded { value, lower, upper } = stop.translation;
         if !(lower <= value && value <= upper) {
@@ -401,10 +404,11 @@ fn proven_translation(
 ) -> Option<Bounded> {
     let overlapping = Some(!matches!(certificate.start, StartProof::Apart(_)));
     let of_pair = Cast { options: cast.options.with_overlapping(overlapping), ..*cast };
-    of_pair.stop_by(triangles).map(|found| found.translation)
+    of_pair.contact_of_triangles(triangles).map(|found| found.translation)
 }
 
-/// Returns the translation of a contact, with the bounds that a check of its two triangles proves.
+/// Returns the translation of a contact. The bounds also enclose those that a check of its two triangles
+/// proves.
 ///
 /// The bounds of the answer may be tighter, because they may come from the hulls of the bodies.
 fn claimed_translation(

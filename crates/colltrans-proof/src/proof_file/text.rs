@@ -7,7 +7,7 @@ use super::statement::{Contacts, DistanceStatement, FreeStatement, Slide, SolidS
 use super::{ProofFile, Statement, motion};
 use colltrans_convex::answer::{Bounded, Depth, Separation};
 use colltrans_convex::body::ObstacleId;
-use colltrans_removal::free::CellProof;
+use colltrans_removal::directions::CellProof;
 use colltrans_scene::{ClearanceProof, NearbyProof, NearestProof};
 use colltrans_solid::cast::{SolidCertificate, StartOverlap, StartProof};
 use colltrans_solid::pair::DistanceCertificate;
@@ -19,16 +19,16 @@ impl fmt::Display for ProofFile {
     /// Writes the statement as one line of text. Translations are multiples of the direction.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (&self.query, &self.statement) {
-            (Query::Cast(along), _) if along.keep > 0.0 => {
-                let keep = along.keep;
-                write!(f, "counted as meeting where they are {keep:?} apart or nearer, ")?;
+            (Query::Cast(along), _) if along.min_gap > 0.0 => {
+                let min_gap = along.min_gap;
+                write!(f, "counted as meeting where they are {min_gap:?} apart or nearer, ")?;
                 // Facets may be closer than the minimum gap by up to eight noises.
                 if matches!(self.statement, Statement::Clearance(_)) {
                     f.write_str("to within rounding, ")?;
                 }
             }
             (Query::Scene(choices), statement) => {
-                write!(f, "of {} obstacles, ", self.obstacles().unwrap_or_default())?;
+                write!(f, "of {} obstacles, ", self.obstacle_count().unwrap_or_default())?;
                 if let Statement::SceneClearance(_) = statement {
                     choices.write_text(f)?;
                 }
@@ -42,7 +42,7 @@ impl fmt::Display for ProofFile {
             (Query::Path(joints), Statement::Path(of)) => of.write_text(f, joints)?,
             (_, statement) => statement.write_text(f)?,
         }
-        let [moving, fixed] = self.inverted();
+        let [moving, fixed] = self.inverted_facets();
         if [moving, fixed] == [0; 2] {
             return Ok(());
         }
@@ -56,9 +56,9 @@ impl fmt::Display for ProofFile {
 
 impl Choices {
     fn write_text(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { keep, tolerance, graze_tolerance, .. } = *self;
-        if keep > 0.0 {
-            write!(f, "counted as met where they are {keep:?} away or nearer, ")?;
+        let Self { min_gap, tolerance, graze_tolerance, .. } = *self;
+        if min_gap > 0.0 {
+            write!(f, "counted as met where they are {min_gap:?} away or nearer, ")?;
         }
         if graze_tolerance > 0.0 {
             write!(f, "passed where they overlap sideways by no more than {graze_tolerance:?}, ")?;

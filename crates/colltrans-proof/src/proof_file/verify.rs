@@ -4,7 +4,7 @@ use super::error::{ProofError, ProofFileError};
 use super::file::{Placement, Query};
 use super::path::PathSetting;
 use super::proven::{Proven, Verify};
-use super::scene::SceneQuery;
+use super::scene::PlacedScene;
 use super::{ProofFile, Statement};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::pair::Pair;
@@ -33,16 +33,20 @@ impl ProofFile {
         Ok(match (&self.query, &self.placement, &self.statement) {
             (Query::Cast(along), Placement::Poses(places), statement) => {
                 check_direction(along.direction)?;
-                check_min_gap(along.keep)?;
+                check_min_gap(along.min_gap)?;
                 match (statement, self.two_placed(places)?) {
                     (Statement::Contacts(of), [Convex(p), Convex(q)])
                         if of.first.or(of.last).is_some() =>
                     {
-                        boxed_claim(of, Cast::new(p, q, along.direction)?.keeping(along.keep)?)
+                        boxed_claim(
+                            of,
+                            Cast::new(p, q, along.direction)?.with_min_gap(along.min_gap)?,
+                        )
                     }
-                    (Statement::Separation(of), [Convex(p), Convex(q)]) => {
-                        boxed_claim(of, Cast::new(p, q, along.direction)?.keeping(along.keep)?)
-                    }
+                    (Statement::Separation(of), [Convex(p), Convex(q)]) => boxed_claim(
+                        of,
+                        Cast::new(p, q, along.direction)?.with_min_gap(along.min_gap)?,
+                    ),
                     (Statement::Clearance(of), [Solid(p), Solid(q)]) => {
                         boxed_claim(of, ([p, q], *along))
                     }
@@ -69,7 +73,7 @@ impl ProofFile {
                 }
             }
             (Query::Scene(choices), Placement::Poses(places), statement) => {
-                let scene = SceneQuery::new(&self.bodies, places, *choices)?;
+                let scene = PlacedScene::new(&self.bodies, places, *choices)?;
                 match statement {
                     Statement::Nearest(of) => boxed_claim(of, scene),
                     Statement::Within(of) => boxed_claim(of, scene),

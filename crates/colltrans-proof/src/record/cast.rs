@@ -1,8 +1,8 @@
 //! Records of answers about two bodies and a direction.
 
 use colltrans_convex::answer::{
-    Bounded, Clearance, Contact, ContactRange, Grazing, Outcome, OverlapAhead, Separated, Solver,
-    Steps, WhyFree,
+    Bounded, Clearance, Contact, ContactRange, FreeReason, Grazing, Outcome, OverlapAhead,
+    Separated, Solver, Steps,
 };
 use colltrans_convex::cast::Cast;
 use colltrans_solid::SolidCast;
@@ -66,7 +66,7 @@ record! {
         /// The part of the bounds' difference that rounding explains.
         pub rounding: Option<f64>,
         /// Minimum gap, a length. The bodies meet if their distance falls to it.
-        pub keep: Option<f64>,
+        pub min_gap: Option<f64>,
         /// Features in contact.
         pub features: Option<FeaturesRecord>,
         /// Gap between the shadows of separated bodies, along the normal.
@@ -116,7 +116,7 @@ record! {
         /// Tolerance in use, a length.
         pub tolerance: Option<f64>,
         /// Minimum gap, a length. The bodies meet if their distance falls to it.
-        pub keep: Option<f64>,
+        pub min_gap: Option<f64>,
         /// Overlaps at the start.
         pub start_overlaps: Vec<StartOverlapRecord>,
         /// Bodies that are open, at least in part.
@@ -166,24 +166,24 @@ impl CastRecord {
 
 impl ClearanceRecord {
     /// Converts an answer of [`Cast::clearance`] for convex bodies.
-    pub fn of(clearance: &Clearance, cast: &Cast) -> Self {
+    pub fn from_clearance(clearance: &Clearance, cast: &Cast) -> Self {
         let at = |outcome, contact| Self { outcome, contact, ..Self::default() };
         match clearance {
             Clearance::Blocked { distance, contact } => {
                 let record = at(Ending::Blocked, ContactRecord::of_contact(contact, cast));
                 Self { distance: Some(*distance), ..record }
             }
-            Clearance::Free(WhyFree::Slides(grazing)) => {
+            Clearance::Free(FreeReason::Slides(grazing)) => {
                 at(Ending::Slides, ContactRecord::of_grazing(grazing, cast))
             }
             // The last contact is the first one of the reversed cast.
-            Clearance::Free(WhyFree::Behind(last)) => {
+            Clearance::Free(FreeReason::Behind(last)) => {
                 let contact =
                     ContactRecord::of_contact(last, &cast.reversed()).with_exit(last.exit());
                 let (translation, translation_bounds) = (None, None);
                 at(Ending::Behind, ContactRecord { translation, translation_bounds, ..contact })
             }
-            Clearance::Free(WhyFree::Separated(separated)) => {
+            Clearance::Free(FreeReason::Separated(separated)) => {
                 at(Ending::Separated, ContactRecord::of_separated(separated, cast))
             }
             Clearance::Overlapping(OverlapAhead { first, last }) => {
@@ -203,9 +203,9 @@ impl ContactRecord {
             translation: Some(translation.value),
             translation_bounds: Some(translation.bounds()),
             normal: Some(without_negative_zeros(contact.normal)),
-            point: Some(without_negative_zeros(contact.points(cast).on_fixed)),
+            point: Some(without_negative_zeros(contact.witness_points(cast).on_fixed)),
             rounding: Some(contact.certificate.rounding),
-            keep: positive_gap(cast.options().keep),
+            min_gap: positive_gap(cast.options().min_gap),
             features: Some(FeaturesRecord::of_bodies(features, [cast.moving(), cast.fixed()])),
             solver: Some(contact.solver),
             steps: Some(contact.steps),
@@ -225,7 +225,7 @@ impl ContactRecord {
         let Separated { certificate, solver, steps, .. } = separated;
         Self {
             normal: Some(without_negative_zeros(certificate.normal)),
-            keep: positive_gap(cast.options().keep),
+            min_gap: positive_gap(cast.options().min_gap),
             margin: Some(certificate.margin),
             solver: Some(*solver),
             steps: Some(*steps),
@@ -240,12 +240,16 @@ impl ContactRecord {
 
 impl SolidClearanceRecord {
     /// Converts an answer of [`Cast::clearance`] for solids. `exit` is the result of `SolidCast::exit`.
-    pub fn of(clearance: &Clearance<Solid>, exit: Option<Bounded>, cast: &Cast<'_, Solid>) -> Self {
+    pub fn from_clearance(
+        clearance: &Clearance<Solid>,
+        exit: Option<Bounded>,
+        cast: &Cast<'_, Solid>,
+    ) -> Self {
         let record = Self {
             exit: exit.map(|exit| exit.value),
             exit_bounds: exit.map(|exit| exit.bounds()),
             tolerance: Some(cast.tolerance()),
-            keep: positive_gap(cast.options().keep),
+            min_gap: positive_gap(cast.options().min_gap),
             surfaces: open_bodies(cast.moving(), cast.fixed()),
             ..Self::default()
         };
@@ -261,8 +265,8 @@ impl SolidClearanceRecord {
                 distance: Some(*distance),
                 translation: Some(contact.translation.value),
                 translation_bounds: Some(contact.translation.bounds()),
-                shrunk_distance: Some(contact.shrunk_distance.value),
-                shrunk_distance_bounds: Some(contact.shrunk_distance.bounds()),
+                shrunk_distance: Some(contact.offset_distance.value),
+                shrunk_distance_bounds: Some(contact.offset_distance.bounds()),
                 normal: Some(without_negative_zeros(contact.normal)),
                 point: Some(without_negative_zeros(contact.point_on_fixed)),
                 features: Some(FeaturesRecord::of_bodies(

@@ -7,7 +7,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::{Ending, StartOverlapRecord, record, without_negative_zeros};
-use colltrans_removal::free::{CellKind, FreeArc, FreeDirections, FreePoint, FreeRegion};
+use colltrans_removal::directions::{CellKind, FreeArc, FreeDirections, FreePoint, FreeRegion};
 
 record! {
     /// All directions along which a body can leave another one. A *share* is a fraction of the sphere of
@@ -68,15 +68,19 @@ record! {
         pub moving: Option<String>,
         /// Name of the blocking part, if the fixed body has several.
         pub fixed: Option<String>,
-        /// Total share of the cells that the search found to be blocked by pairs of facets of these parts. It
-        /// is a lower bound of the share that these parts block.
+        /// Total share of the blocked cells that are attributed to these parts. A cell that one pair of
+        /// facets blocks is attributed to the parts of these facets. A cell that boxes inside the bodies
+        /// block is attributed to parts that block the direction at its center.
         pub share: f64,
     }
 }
 
 impl FreeRecord {
     /// Converts an answer. `names` maps a pair of triangles to the names of their parts.
-    pub fn of(free: &FreeDirections<'_>, names: impl Fn([u32; 2]) -> [Option<String>; 2]) -> Self {
+    pub fn from_directions(
+        free: &FreeDirections<'_>,
+        names: impl Fn([u32; 2]) -> [Option<String>; 2],
+    ) -> Self {
         let regions = free.regions();
         let undecided = free.cells().filter(|cell| cell.kind == CellKind::Undecided).count();
         let also_free = free.free_among_undecided();
@@ -100,7 +104,7 @@ impl FreeRecord {
             also_free: also_free.into_iter().map(without_negative_zeros).collect(),
             blocked_by: blocking_parts(free, names),
             tolerance: Some(free.tolerance()),
-            cells: Some(free.work()[0]),
+            cells: Some(free.work_counts()[0]),
             undecided_cells: Some(undecided as u64),
             ..Self::default()
         }

@@ -40,7 +40,7 @@ record! {
         /// Tolerated depth for convex bodies, tolerance in use for solids; a length.
         pub tolerance: Option<f64>,
         /// Minimum gap, a length. The bodies meet if their distance falls to it.
-        pub keep: Option<f64>,
+        pub min_gap: Option<f64>,
         /// Overlaps at the start of the motion.
         pub start_overlaps: Vec<StartOverlapRecord>,
         /// For solids, the bodies that are open, at least in part.
@@ -57,8 +57,8 @@ record! {
 impl MotionRecord {
     /// Converts an answer of [`MotionCast::first_contact`] for convex bodies. `cast` must be the cast of the
     /// query.
-    pub fn of(outcome: &MotionOutcome, cast: &MotionCast<'_>) -> Self {
-        let planes = outcome.proof().planes();
+    pub fn from_outcome(outcome: &MotionOutcome, cast: &MotionCast<'_>) -> Self {
+        let planes = outcome.proof().plane_count();
         let tolerance = Some(cast.tolerance()).filter(|depth| *depth > 0.0);
         Self { planes: Some(planes), tolerance, ..Self::of_motion_outcome(outcome, cast) }
     }
@@ -76,8 +76,9 @@ impl MotionRecord {
     /// Converts an answer of [`MotionCast::clearance`] for convex bodies. `cast` must be the cast of the
     /// query. If the body is blocked, `time` is the contact in nominal position.
     pub fn of_clearance(clearance: &MotionClearance, cast: &MotionCast<'_>) -> Self {
-        let record = Self::of_motion_clearance(clearance, |outcome| Self::of(outcome, cast));
-        Self { keep: positive_gap(cast.keep()), ..record }
+        let record =
+            Self::of_motion_clearance(clearance, |outcome| Self::from_outcome(outcome, cast));
+        Self { min_gap: positive_gap(cast.min_gap()), ..record }
     }
 
     /// Converts an answer of [`MotionCast::clearance`] for solids. `cast` must be the cast of the query.
@@ -87,8 +88,8 @@ impl MotionRecord {
     ) -> Self {
         let record = Self::of_motion_clearance(clearance, |outcome| Self::of_solids(outcome, cast));
         let surfaces = open_bodies(cast.bodies()[0], cast.bodies()[1]);
-        let (tolerance, keep) = (Some(cast.tolerance()), positive_gap(cast.keep()));
-        Self { tolerance, keep, surfaces, ..record }
+        let (tolerance, min_gap) = (Some(cast.tolerance()), positive_gap(cast.min_gap()));
+        Self { tolerance, min_gap, surfaces, ..record }
     }
 
     fn of_motion_clearance<P: Clone>(
@@ -112,8 +113,8 @@ impl MotionRecord {
     }
 
     fn of_motion_outcome<P, B: Body>(outcome: &MotionOutcome<P>, cast: &MotionCast<'_, B>) -> Self {
-        let (keep, looks) = (positive_gap(cast.keep()), outcome.steps().looks);
-        let record = Self { keep, looks, ..Self::default() };
+        let (min_gap, looks) = (positive_gap(cast.min_gap()), outcome.steps().looks);
+        let record = Self { min_gap, looks, ..Self::default() };
         match outcome {
             MotionOutcome::Contact(contact) => record.with_contact(Ending::Contact, contact, cast),
             MotionOutcome::Grazing(contact) => record.with_contact(Ending::Grazing, contact, cast),

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashSet};
 
 use super::{Ending, TimeRecord, record, without_negative_zeros};
-use colltrans_motion::path::{PathCast, PathContact, PathOutcome, Place};
+use colltrans_motion::path::{PathCast, PathContact, PathOutcome, PathPlace};
 
 record! {
     /// First contact of two bodies on a path. Fields that do not apply are omitted.
@@ -15,10 +15,10 @@ record! {
         /// - `overlapping`: bodies overlap at the start of the path.
         /// - `undecided`: the search took its maximum number of steps. No bodies meet before `time.lower`.
         pub outcome: Ending,
-        /// Bounds of the contact in the times of the path. The upper bound is absent for a grazing contact.
+        /// Bounds of the contact in the times of the path. The upper bound is absent if no contact is proven.
         pub time: Option<TimeRecord>,
         /// Position of the contact between two rows of the path.
-        pub place: Option<Place>,
+        pub place: Option<PathPlace>,
         /// Names of the two bodies.
         pub pair: Option<[String; 2]>,
         /// Point of the first body that is nearest to the second one at that time, in the world frame.
@@ -26,14 +26,14 @@ record! {
         /// Unit normal in the world frame, from the first to the second body.
         pub normal: Option<[f64; 3]>,
         /// Minimum gap, a length. Two bodies meet if their distance falls to it.
-        pub keep: Option<f64>,
+        pub min_gap: Option<f64>,
         /// Number of pairs of bodies in the query.
         pub pairs: usize,
         /// Names of the pairs that the query omits although a joint may move one body against the other. No
         /// claim is made about them.
         pub left_out: Vec<[String; 2]>,
         /// For a path that starts with overlaps, the names of all pairs that overlap there or are closer than
-        /// `keep`.
+        /// `min_gap`.
         pub overlaps: Vec<[String; 2]>,
         /// Links whose meshes are replaced by their convex hulls. A contact of such a link is a contact of
         /// its hull.
@@ -52,7 +52,7 @@ record! {
 
 impl PathRecord {
     /// Converts an answer. `cast` must be the cast of the query, `names` are the names of its bodies.
-    pub fn of(outcome: &PathOutcome, cast: &PathCast<'_>, names: &[String]) -> Self {
+    pub fn from_outcome(outcome: &PathOutcome, cast: &PathCast<'_>, names: &[String]) -> Self {
         let ending = match outcome {
             PathOutcome::Contact(_) => Ending::Contact,
             PathOutcome::Grazing(_) => Ending::Grazing,
@@ -60,9 +60,9 @@ impl PathRecord {
             PathOutcome::Overlapping(_) => Ending::Overlapping,
             _ => Ending::Undecided,
         };
-        let (looks, planes) = (outcome.steps().looks, outcome.proof().planes());
+        let (looks, planes) = (outcome.steps().looks, outcome.proof().plane_count());
         let pairs = cast.pairs().len();
-        let keep = Some(cast.keep()).filter(|gap| *gap > 0.0);
+        let min_gap = Some(cast.min_gap()).filter(|gap| *gap > 0.0);
         let left_out = omitted_pairs(cast, names);
         let overlaps = match outcome {
             PathOutcome::Overlapping(of) => start_overlap_names(cast, of.pair, names),
@@ -70,7 +70,7 @@ impl PathRecord {
         };
         let record = Self {
             outcome: ending,
-            keep,
+            min_gap,
             pairs,
             left_out,
             overlaps,
@@ -100,8 +100,8 @@ impl PathRecord {
     }
 }
 
-/// Returns the names of all pairs that overlap at the start of the path, without duplicates. If this fails,
-/// returns the pair `known`.
+/// Returns the names of all pairs that overlap at the start of the path or whose distance there is at most
+/// the minimum gap, without duplicates. If this query fails, returns the names of the pair `known`.
 fn start_overlap_names(
     cast: &PathCast<'_>,
     known: [usize; 2],
@@ -123,7 +123,7 @@ fn omitted_pairs(cast: &PathCast<'_>, names: &[String]) -> Vec<[String; 2]> {
     let named = |pair: &[usize; 2]| pair.map(|body| names.get(body).cloned().unwrap_or_default());
     let mut listed: HashSet<[String; 2]> = cast.pairs().iter().map(named).collect();
     let mut left_out = Vec::new();
-    for [a, b] in cast.left_out().iter().map(named) {
+    for [a, b] in cast.unqueried_pairs().iter().map(named) {
         if !listed.contains(&[b.clone(), a.clone()]) && listed.insert([a.clone(), b.clone()]) {
             left_out.push([a, b]);
         }

@@ -2,7 +2,7 @@
 
 use colltrans_convex::answer::{Depth, Distance, Steps, Within};
 use colltrans_convex::body::Body;
-use colltrans_convex::pair::{Pair, points};
+use colltrans_convex::pair::{Pair, nearest_points_in_world};
 use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::SolidPairSearch;
 use colltrans_solid::body::Solid;
@@ -67,7 +67,7 @@ record! {
 
 impl DistanceRecord {
     /// Converts an answer of [`Pair::distance`] for convex bodies.
-    pub fn of(distance: &Distance, pair: &Pair<'_>) -> Self {
+    pub fn from_distance(distance: &Distance, pair: &Pair<'_>) -> Self {
         Self { steps: Some(distance.steps), ..Self::of_any_distance(distance, pair) }
     }
 
@@ -82,7 +82,9 @@ impl DistanceRecord {
     /// Converts an answer of [`Pair::within_counted`] for convex bodies.
     pub fn of_within(within: &Within, steps: Steps, pair: &Pair) -> Self {
         let record = match within {
-            Within::Closer(near) => Self::of_near_points(near.distance, points(&pair.bodies, near)),
+            Within::Closer(near) => {
+                Self::of_near_points(near.distance, nearest_points_in_world(&pair.bodies, near))
+            }
             Within::Farther(gap) => {
                 Self { normal: Some(without_negative_zeros(gap.normal)), ..Self::of_gap(gap.gap) }
             }
@@ -102,7 +104,9 @@ impl DistanceRecord {
         pair: &Pair<'_, Solid>,
     ) -> Result<Self, QueryError> {
         let record = match within {
-            Within::Closer(near) => Self::of_near_points(near.distance(), pair.points(near)?),
+            Within::Closer(near) => {
+                Self::of_near_points(near.distance(), pair.witness_points(near)?)
+            }
             Within::Farther(gap) => Self::of_gap(gap.gap),
             Within::Undecided(distance) => {
                 Self { outcome: Ending::Undecided, ..Self::of_any_distance(distance, pair) }
@@ -139,7 +143,7 @@ impl DistanceRecord {
 
 impl DepthRecord {
     /// Converts an answer of [`Pair::depth`].
-    pub fn of(depth: &Depth) -> Self {
+    pub fn from_depth(depth: &Depth) -> Self {
         let outcome = match (depth.lower > 0.0, depth.upper > 0.0) {
             (true, _) => Ending::Overlapping,
             (false, true) => Ending::Touching,

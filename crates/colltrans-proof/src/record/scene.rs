@@ -2,8 +2,8 @@
 
 use colltrans_convex::answer::{Solver, Steps};
 use colltrans_convex::body::ObstacleId;
-use colltrans_convex::pair::points;
-use colltrans_scene::{Among, ClearanceAmong, Nearby, Nearest};
+use colltrans_convex::pair::nearest_points_in_world;
+use colltrans_scene::{Nearby, Nearest, SceneClearance, SceneQuery};
 use colltrans_solid::SolidPairSearch;
 use colltrans_solid::kinds::{AnyClearance, AnyNear, ByKind};
 use glam::DVec3;
@@ -96,7 +96,7 @@ record! {
         /// For solids, the tolerance in use, a length.
         pub tolerance: Option<f64>,
         /// Minimum gap, a length. Bodies meet if their distance falls to it.
-        pub keep: Option<f64>,
+        pub min_gap: Option<f64>,
         /// For solids, the overlaps at the start.
         pub start_overlaps: Vec<StartOverlapRecord>,
         /// For solids, the bodies that are open, at least in part.
@@ -111,11 +111,13 @@ record! {
 }
 
 impl NearestRecord {
-    /// Converts an answer of [`Among::nearest`]. `among` must be the query.
-    pub fn of(nearest: &Nearest, among: &Among<'_>) -> Self {
+    /// Converts an answer of [`SceneQuery::nearest`]. `among` must be the query.
+    pub fn from_nearest(nearest: &Nearest, among: &SceneQuery<'_>) -> Self {
         let Nearest { obstacle, ref distance, lower, .. } = *nearest;
         let of = match (among.pair_with(obstacle), distance) {
-            (Some(ByKind::Convex(pair)), ByKind::Convex(of)) => DistanceRecord::of(of, &pair),
+            (Some(ByKind::Convex(pair)), ByKind::Convex(of)) => {
+                DistanceRecord::from_distance(of, &pair)
+            }
             (Some(ByKind::Solid(pair)), ByKind::Solid(of)) => DistanceRecord::of_solids(of, &pair),
             // The obstacle has been removed since the query.
             _ => DistanceRecord { upper: Some(distance.upper()), ..DistanceRecord::default() },
@@ -128,7 +130,7 @@ impl NearestRecord {
             points,
             fixed,
             obstacle,
-            obstacles: among.count(),
+            obstacles: among.queried_count(),
             normal,
             features,
             steps,
@@ -147,8 +149,8 @@ impl From<&NearestRecord> for DistanceRecord {
 }
 
 impl SceneWithinRecord {
-    /// Converts an answer of [`Among::within`]. `among` must be the query.
-    pub fn of(nearby: &Nearby, among: &Among<'_>) -> Self {
+    /// Converts an answer of [`SceneQuery::within`]. `among` must be the query.
+    pub fn from_nearby(nearby: &Nearby, among: &SceneQuery<'_>) -> Self {
         let outcome = match (nearby.closer.is_empty(), nearby.undecided.is_empty()) {
             (false, _) => Ending::Closer,
             (true, false) => Ending::Undecided,
@@ -168,33 +170,37 @@ impl SceneWithinRecord {
             ..NearbyRecord::default()
         });
         let (closer, undecided) = (Some(closer.collect()), undecided.collect());
-        Self { outcome, obstacles: among.count(), closer, undecided }
+        Self { outcome, obstacles: among.queried_count(), closer, undecided }
     }
 }
 
 impl SceneClearanceRecord {
-    /// Converts an answer of [`Among::clearance`]. `among` must be the query.
-    pub fn of(found: &ClearanceAmong, among: &Among<'_>, direction: DVec3) -> Self {
+    /// Converts an answer of [`SceneQuery::clearance`]. `among` must be the query.
+    pub fn from_clearance(
+        found: &SceneClearance,
+        among: &SceneQuery<'_>,
+        direction: DVec3,
+    ) -> Self {
         let record = found.stop.and_then(|(id, stop)| {
-            Some(match (among.cast_at(id, direction)?, stop) {
+            Some(match (among.cast_with(id, direction)?, stop) {
                 (ByKind::Convex(cast), AnyClearance::Convex(of)) => {
-                    ClearanceRecord::of(&of, &cast).into()
+                    ClearanceRecord::from_clearance(&of, &cast).into()
                 }
                 (ByKind::Solid(cast), AnyClearance::Solid(of)) => {
-                    SolidClearanceRecord::of(&of, None, &cast).into()
+                    SolidClearanceRecord::from_clearance(&of, None, &cast).into()
                 }
                 _ => return None,
             })
         });
         let free = || Self {
             outcome: Ending::Free,
-            keep: positive_gap(among.options().keep),
+            min_gap: positive_gap(among.options().min_gap),
             ..Self::default()
         };
         Self {
-            distance: found.distance().filter(|distance| distance.is_finite()),
+            distance: found.safe_translation().filter(|distance| distance.is_finite()),
             obstacle: found.stop.map(|(id, _)| id),
-            obstacles: among.count(),
+            obstacles: among.queried_count(),
             ..record.unwrap_or_else(free)
         }
     }
@@ -203,7 +209,7 @@ impl SceneClearanceRecord {
 impl From<ClearanceRecord> for SceneClearanceRecord {
     fn from(of: ClearanceRecord) -> Self {
         let ContactRecord { translation, translation_bounds, exit, exit_bounds, .. } = of.contact;
-        let ContactRecord { normal, point, rounding, keep, features, solver, steps, .. } =
+        let ContactRecord { normal, point, rounding, min_gap, features, solver, steps, .. } =
             of.contact;
         Self {
             outcome: of.outcome,
@@ -216,7 +222,7 @@ impl From<ClearanceRecord> for SceneClearanceRecord {
             normal,
             point,
             rounding,
-            keep,
+            min_gap,
             features,
             solver,
             steps,
@@ -236,7 +242,7 @@ impl From<SolidClearanceRecord> for SceneClearanceRecord {
             normal: of.normal,
             point: of.point,
             tolerance: of.tolerance,
-            keep: of.keep,
+            min_gap: of.min_gap,
             start_overlaps: of.start_overlaps,
             surfaces: of.surfaces,
             features: of.features,
@@ -247,10 +253,14 @@ impl From<SolidClearanceRecord> for SceneClearanceRecord {
 
 /// Returns two near points in the world frame. Returns `None` if the obstacle has been removed since the
 /// query.
-fn points_of(obstacle: ObstacleId, near: &AnyNear, among: &Among<'_>) -> Option<[[f64; 3]; 2]> {
+fn points_of(
+    obstacle: ObstacleId,
+    near: &AnyNear,
+    among: &SceneQuery<'_>,
+) -> Option<[[f64; 3]; 2]> {
     let found = match (among.pair_with(obstacle)?, near) {
-        (ByKind::Convex(pair), ByKind::Convex(near)) => points(&pair.bodies, near),
-        (ByKind::Solid(pair), ByKind::Solid(near)) => pair.points(near).ok()?,
+        (ByKind::Convex(pair), ByKind::Convex(near)) => nearest_points_in_world(&pair.bodies, near),
+        (ByKind::Solid(pair), ByKind::Solid(near)) => pair.witness_points(near).ok()?,
         _ => return None,
     };
     Some(found.map(without_negative_zeros))

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::record;
-use colltrans_removal::ways::{Searched, WaysOut};
+use colltrans_removal::path::{RemovalSearch, SearchWork};
 
 record! {
     /// Removal path in several moves, a proof that none exists, or the work of a search without a result.
@@ -11,7 +11,7 @@ record! {
     #[non_exhaustive]
     pub struct WaysRecord {
         /// - `found`: the record has a path.
-        /// - `none`: it is proven that no sequence of translations exists.
+        /// - `none`: it is proven that no sequence of translations separates the bodies.
         /// - `not_found`: the search found no path, which proves nothing.
         pub outcome: &'static str,
         /// Moves in order.
@@ -21,7 +21,7 @@ record! {
         /// Number of displacement cells of the proof that no path exists.
         pub cells: Option<usize>,
         /// Amounts of work of the search.
-        pub searched: Option<Searched>,
+        pub searched: Option<SearchWork>,
     }
 }
 
@@ -31,16 +31,16 @@ pub struct LegRecord {
     /// Direction of length 1.
     pub direction: [f64; 3],
     /// Length of the move; infinite for the last one, which nothing blocks.
-    #[serde(serialize_with = "colltrans_kernel::written::or_infinite::serialize")]
+    #[serde(serialize_with = "colltrans_kernel::serialization::null_as_infinity::serialize")]
     pub travel: f64,
 }
 
 impl WaysRecord {
     /// Converts an answer about two bodies.
-    pub fn of(ways: &WaysOut) -> Self {
+    pub fn from_search(ways: &RemovalSearch) -> Self {
         match ways {
-            WaysOut::Found(way) => {
-                let leg = |leg: &colltrans_removal::ways::Leg| LegRecord {
+            RemovalSearch::Found(way) => {
+                let leg = |leg: &colltrans_removal::path::Leg| LegRecord {
                     direction: leg.direction.to_array(),
                     travel: leg.travel,
                 };
@@ -48,11 +48,11 @@ impl WaysRecord {
                 let (tolerance, searched) = (Some(way.tolerance), Some(way.searched));
                 Self { outcome: "found", legs, tolerance, searched, ..Self::default() }
             }
-            WaysOut::Proven(proof) => {
-                let (tolerance, cells) = (Some(proof.tolerance), Some(proof.cells()));
+            RemovalSearch::Proven(proof) => {
+                let (tolerance, cells) = (Some(proof.tolerance), Some(proof.cell_count()));
                 Self { outcome: "none", tolerance, cells, ..Self::default() }
             }
-            WaysOut::NotFound { searched } => {
+            RemovalSearch::NotFound { searched } => {
                 let (outcome, searched) = ("not_found", Some(*searched));
                 Self { outcome, searched, ..Self::default() }
             }

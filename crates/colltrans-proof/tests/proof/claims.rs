@@ -16,10 +16,11 @@ fn at(x: f64) -> Pose {
 }
 
 /// Returns the proof of a cube that slides by 4 towards another one at distance 2, with a minimum gap.
-fn sliding_cube_proof(keep: f64) -> Value {
-    let (cube, motion) = (cube(), Motion::slide(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion"));
+fn sliding_cube_proof(min_gap: f64) -> Value {
+    let (cube, motion) =
+        (cube(), Motion::translation(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion"));
     let cast = MotionCast::new(cube.along(&motion), cube.at(at(3.0))).expect("a cast");
-    let cast = cast.keeping(keep).expect("a gap");
+    let cast = cast.with_min_gap(min_gap).expect("a gap");
     let outcome = cast.first_contact().expect("an answer");
     serde_json::from_str(&ProofFile::of_motion(&cast, &outcome).to_json()).expect("JSON")
 }
@@ -67,7 +68,7 @@ fn contact_without_planes_claims_only_upper_bound() {
 
 #[test]
 fn motion_piece_starting_at_end_is_rejected() {
-    let (cube, motion) = (cube(), Motion::slide(Pose::IDENTITY, DVec3::Y).expect("a motion"));
+    let (cube, motion) = (cube(), Motion::translation(Pose::IDENTITY, DVec3::Y).expect("a motion"));
     let cast = MotionCast::new(cube.along(&motion), cube.at(at(3.0))).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
     let file = ProofFile::of_motion(&cast, &outcome).to_json();
@@ -109,15 +110,19 @@ fn joined_pairs_need_equal_minimum_gap() {
     // The joined statement would claim the gap 0.25 for all pairs.
     assert!(matches!(several(&[kept, plain]), Err(ProofFileError::Pairs { pair: 0 })));
     assert!(matches!(several(&[]), Err(ProofFileError::NoPairs)));
-    statement_text(&with_value(&file, "/query/motions/1/keep", json!(0.125)))
+    statement_text(&with_value(&file, "/query/motions/1/min_gap", json!(0.125)))
         .expect_err("two gaps");
     let pair = file["placement"]["motions"][0].clone();
     statement_text(&with_value(&file, "/placement/motions", json!([pair])))
         .expect_err("a pair is missing");
     statement_text(&with_value(&file, "/placement/motions/1/0/body", json!(1)))
         .expect_err("no such body");
-    statement_text(&with_value(&file, "/query/motions/0", json!({"keep": 0.25, "tolerance": 0.0})))
-        .expect_err("convex bodies have no tolerance");
+    statement_text(&with_value(
+        &file,
+        "/query/motions/0",
+        json!({"min_gap": 0.25, "tolerance": 0.0}),
+    ))
+    .expect_err("convex bodies have no tolerance");
 }
 
 /// Returns the proof of a bar that turns into a post, both as solids.
@@ -126,10 +131,11 @@ fn turning_bar_proof() -> Value {
     let bar = Solid::from_convex(&bar.expect("a bar")).expect("a solid");
     let post = ConvexPolyhedron::cuboid(DVec3::splat(-0.1), DVec3::splat(0.3)).expect("a post");
     let post = Solid::from_convex(&post).expect("a solid");
-    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::PI);
+    let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::PI);
     let turn = turn.expect("a turn");
-    let still = Motion::still(Pose::from_translation(DVec3::Y * 1.5).expect("a pose"));
-    let cast = MotionCast::<Solid>::new(bar.along(&turn), post.along(&still)).expect("a cast");
+    let still = Motion::at_rest(Pose::from_translation(DVec3::Y * 1.5).expect("a pose"));
+    let cast =
+        MotionCast::<Solid>::new(bar.with_motion(&turn), post.with_motion(&still)).expect("a cast");
     let (_, file) = ProofFile::with_solid_motion(&cast).expect("an answer");
     serde_json::from_str(&file.to_json()).expect("JSON")
 }
@@ -156,9 +162,9 @@ fn cart_proof(rows: &[f64]) -> Value {
     let cube = cube();
     let frame = Frame { parent: None, origin: Pose::IDENTITY, joint: Joint::Sliding(DVec3::X) };
     let slide = Mechanism::new(vec![frame]).expect("a mechanism");
-    let path = JointPath::evenly(rows.iter().map(|x| vec![*x]).collect()).expect("a path");
-    let mut bodies = vec![PathBody::carried(0, cube.at(Pose::IDENTITY))];
-    bodies.extend([3.0, 5.0, 40.0].map(|x| PathBody::standing(cube.at(at(x)))));
+    let path = JointPath::at_unit_times(rows.iter().map(|x| vec![*x]).collect()).expect("a path");
+    let mut bodies = vec![PathBody::carried_by(0, cube.at(Pose::IDENTITY))];
+    bodies.extend([3.0, 5.0, 40.0].map(|x| PathBody::at_rest(cube.at(at(x)))));
     let pairs = vec![[0, 1], [0, 2], [0, 3]];
     let cast = PathCast::new(&slide, &path, bodies, pairs).expect("a cast");
     let names = ["cart".into(), "stop".into(), "wall".into()];
@@ -197,17 +203,18 @@ fn body_name_that_reads_like_sentence_is_quoted() {
 #[test]
 fn joined_proofs_report_start_overlap_of_one_pair() {
     let cube = cube().as_solid().expect("a solid").clone();
-    let motion = Motion::slide(Pose::IDENTITY, DVec3::X).expect("a motion");
+    let motion = Motion::translation(Pose::IDENTITY, DVec3::X).expect("a motion");
     let proofs = [0.5, 9.0].map(|x| {
-        let cast = MotionCast::<Solid>::new(cube.along(&motion), cube.at(at(x))).expect("a cast");
-        ProofFile::with_solid_motion(&cast.tolerating(0.0).expect("a tolerance"))
+        let cast =
+            MotionCast::<Solid>::new(cube.with_motion(&motion), cube.at(at(x))).expect("a cast");
+        ProofFile::with_solid_motion(&cast.with_tolerance(0.0).expect("a tolerance"))
             .expect("a proof")
             .1
     });
     let alone = proofs[0].to_string();
     assert!(alone.ends_with("overlap when the motion begins"), "{alone}");
     let both = ProofFile::of_motions(proofs.into()).expect("one question");
-    assert_eq!(both.check().expect("it holds").time(), Some([0.0, 0.0]));
+    assert_eq!(both.check().expect("it holds").time_bounds(), Some([0.0, 0.0]));
     let said = both.to_string();
     assert_eq!(said, "of 2 pairs of bodies those of one meet when the motion begins");
 }
@@ -289,17 +296,17 @@ fn deeply_nested_path_proof_is_read_back() {
     let ring = Solid::from_mesh(&vertices, &faces).expect("a ring");
     let frame = Frame { parent: None, origin: Pose::IDENTITY, joint: Joint::Turning(DVec3::Z) };
     let hinge = Mechanism::new(vec![frame]).expect("a mechanism");
-    let path = JointPath::evenly(vec![vec![0.0], vec![0.05], vec![0.1]]).expect("a path");
+    let path = JointPath::at_unit_times(vec![vec![0.0], vec![0.05], vec![0.1]]).expect("a path");
     let upright = DQuat::from_mat3(&DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X));
     let through = Pose::new(upright, DVec3::X * 0.5).expect("a pose");
     let bodies =
-        vec![PathBody::carried(0, ring.at(Pose::IDENTITY)), PathBody::standing(ring.at(through))];
+        vec![PathBody::carried_by(0, ring.at(Pose::IDENTITY)), PathBody::at_rest(ring.at(through))];
     let cast = PathCast::new(&hinge, &path, bodies, vec![[0, 1]]).expect("a cast");
     let (_, file) = ProofFile::with_path(&cast, &[]).expect("an answer");
     let text = file.to_json();
     assert!(serde_json::from_str::<Value>(&text).is_err(), "the nesting is not deep enough");
     let read = ProofFile::from_json(&text).expect("a proof");
-    assert_eq!(read.check().expect("it holds").time(), Some([2.0, f64::INFINITY]));
+    assert_eq!(read.check().expect("it holds").time_bounds(), Some([2.0, f64::INFINITY]));
     let deeper = text.replacen("\"covers\":[", &format!("\"covers\":{}", "[".repeat(500)), 1);
     let refused = ProofFile::from_json(&deeper).unwrap_err().to_string();
     assert!(refused.contains("nested more than 400 deep"), "{refused}");
@@ -328,11 +335,11 @@ fn zero_depth_does_not_prove_contact_at_minimum_gap() {
 #[test]
 fn joined_pairs_with_tolerance_are_rejected() {
     let cube = cube().as_solid().expect("a solid").clone();
-    let motion = Motion::slide(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion");
+    let motion = Motion::translation(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion");
     let there = Pose::from_translation(DVec3::new(2.0, 0.75, 0.0)).expect("a pose");
-    let cast = MotionCast::<Solid>::new(cube.along(&motion), cube.at(there)).expect("a cast");
+    let cast = MotionCast::<Solid>::new(cube.with_motion(&motion), cube.at(there)).expect("a cast");
     for (tolerance, holds) in [(0.0, true), (0.6, false)] {
-        let cast = cast.clone().tolerating(tolerance).expect("a tolerance");
+        let cast = cast.clone().with_tolerance(tolerance).expect("a tolerance");
         let (_, file) = ProofFile::with_solid_motion(&cast).expect("an answer");
         assert!(file.check().is_ok(), "the statement about one pair mentions the offset");
         let read = ProofFile::of_motions(vec![file.clone(), file]);

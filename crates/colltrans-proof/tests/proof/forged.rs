@@ -6,7 +6,7 @@ use colltrans_convex::{
 use colltrans_proof::ProofFile;
 use colltrans_solid::{AsSolid, Solid, SolidOptions, StartOverlap};
 use colltrans_testkit::bodies::{at_xyz as pose, cube};
-use colltrans_testkit::oracle::proofs::checkers::{Fractions, Verdict, verify};
+use colltrans_testkit::oracle::proofs::checkers::{RationalChecker, Verdict, verify};
 use colltrans_testkit::oracle::proofs::{Campaign, KINDS};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::tally::Tally;
@@ -17,24 +17,24 @@ use serde_json::{Value, json};
 const U: f64 = 0.5 * f64::EPSILON;
 
 /// Starts `check.py`, if Python is available.
-fn start_fractions() -> Option<Fractions> {
-    Fractions::start().ok()
+fn start_fractions() -> Option<RationalChecker> {
+    RationalChecker::start().ok()
 }
 
 /// Returns the verdicts of the library and, if available, of `check.py`.
-fn verdicts(file: &Value, fractions: &mut Option<Fractions>) -> Vec<Verdict> {
+fn verdicts(file: &Value, fractions: &mut Option<RationalChecker>) -> Vec<Verdict> {
     let text = file.to_string();
     let of_fractions = fractions.as_mut().map(|fractions| fractions.check(&text));
     [verify(&text)].into_iter().chain(of_fractions).collect()
 }
 
-fn assert_refused(file: &Value, fractions: &mut Option<Fractions>) {
+fn assert_refused(file: &Value, fractions: &mut Option<RationalChecker>) {
     for verdict in verdicts(file, fractions) {
         assert!(matches!(verdict, Verdict::Refused(_)), "{verdict:?}: {file}");
     }
 }
 
-fn assert_holds(file: &Value, fractions: &mut Option<Fractions>) {
+fn assert_holds(file: &Value, fractions: &mut Option<RationalChecker>) {
     for verdict in verdicts(file, fractions) {
         assert_eq!(verdict, Verdict::Holds, "{file}");
     }
@@ -143,7 +143,7 @@ fn both_checkers_reject_values_outside_specification() {
     file["statement"]["contacts"]["first"].as_object_mut().expect("fields").remove("rounding");
     assert_refused(&file, &mut fractions);
     file = contacts;
-    file["query"]["cast"]["keep"] = json!(-1.0);
+    file["query"]["cast"]["min_gap"] = json!(-1.0);
     assert_refused(&file, &mut fractions);
 }
 
@@ -203,7 +203,7 @@ fn unused_vertex_of_piece_is_rejected() {
     let cast = cast.expect("a query");
     let proof = ProofFile::of_solids(&cast, [&[p], &[q]]).expect("a proof");
     let mut file: Value = serde_json::from_str(&proof.to_json()).expect("JSON");
-    let verdicts_of = |file: &Value, fractions: &mut Option<Fractions>| -> Vec<bool> {
+    let verdicts_of = |file: &Value, fractions: &mut Option<RationalChecker>| -> Vec<bool> {
         verdicts(file, fractions).iter().map(|v| !matches!(v, Verdict::Refused(_))).collect()
     };
     assert!(verdicts_of(&file, &mut fractions).iter().all(|holds| *holds));

@@ -3,7 +3,7 @@
 mod claims;
 mod common;
 mod forged;
-mod keep;
+mod min_gap;
 mod motions;
 mod proof_file;
 mod written;

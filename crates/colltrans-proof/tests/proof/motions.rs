@@ -16,20 +16,22 @@ fn motion_case_round_trips_exactly() {
             let cast = setting.query(&bodies).expect("a query");
             let (a, b) = (cast.moving_pose(), cast.fixed_pose());
             let x = 0.1 + seed as f64;
-            let Ok(turn) = Motion::turn(a, b.translation(), cast.direction(), x) else { continue };
-            let Ok(back) = Motion::between(b, a) else { continue };
+            let Ok(turn) = Motion::rotation_about(a, b.translation(), cast.direction(), x) else {
+                continue;
+            };
+            let Ok(back) = Motion::between_poses(b, a) else { continue };
             let asked = MotionCast::new(cast.moving().along(&turn), cast.fixed().along(&back));
             let asked = asked.expect("a cast");
             let asked = match seed % 3 {
                 0 => asked,
-                1 => asked.keeping(0.25).expect("a gap"),
-                _ => asked.tolerating(0.25).expect("a depth"),
+                1 => asked.with_min_gap(0.25).expect("a gap"),
+                _ => asked.with_tolerance(0.25).expect("a depth"),
             };
-            let saved = MotionCase::of(&asked).to_json();
+            let saved = MotionCase::from_cast(&asked).to_json();
             let case = MotionCase::from_json(&saved).unwrap_or_else(|e| panic!("{setting}: {e}"));
             let again = case.cast();
-            assert_eq!(MotionCase::of(&again).to_json(), saved, "{setting}");
-            assert_eq!([again.keep(), again.tolerance()], [asked.keep(), asked.tolerance()]);
+            assert_eq!(MotionCase::from_cast(&again).to_json(), saved, "{setting}");
+            assert_eq!([again.min_gap(), again.tolerance()], [asked.min_gap(), asked.tolerance()]);
             let answers = [&asked, &again].map(|cast| format!("{:?}", cast.first_contact()));
             assert_eq!(answers[0], answers[1], "{setting}");
         }
@@ -41,10 +43,10 @@ fn invalid_motion_case_is_rejected_with_reason() {
     let setting = setting("boxes", 3);
     let bodies = setting.bodies().expect("bodies");
     let cast = setting.query(&bodies).expect("a query");
-    let slide = Motion::slide(cast.moving_pose(), cast.direction()).expect("a motion");
+    let slide = Motion::translation(cast.moving_pose(), cast.direction()).expect("a motion");
     let asked = MotionCast::new(cast.moving().along(&slide), cast.fixed().at(cast.fixed_pose()));
     let asked = asked.expect("a cast");
-    let good = MotionCase::of(&asked).to_json();
+    let good = MotionCase::from_cast(&asked).to_json();
     let proof = ProofFile::of_motion(&asked, &asked.first_contact().expect("an answer")).to_json();
     for (wrong, why) in [
         ("{}".to_owned(), "not a saved query"),
@@ -53,9 +55,9 @@ fn invalid_motion_case_is_rejected_with_reason() {
         (proof.replace("colltrans proof", "colltrans motion case 1"), "unknown field `version`"),
         (good.replace("\"since\":0.0", "\"since\":0.5"), "time"),
         (good.replace("\"rate\":0.0", "\"rate\":1e9"), "angle"),
-        (good.replace("\"format\"", "\"keep\":1e70,\"format\""), "gap"),
-        (good.replace("\"format\"", "\"keep\":-1e70,\"format\""), "tolerance"),
-        (good.replace("\"format\"", "\"keep\":1e999,\"format\""), "larger than any double"),
+        (good.replace("\"format\"", "\"min_gap\":1e70,\"format\""), "gap"),
+        (good.replace("\"format\"", "\"min_gap\":-1e70,\"format\""), "tolerance"),
+        (good.replace("\"format\"", "\"min_gap\":1e999,\"format\""), "larger than any double"),
         (good.replace("\"moving_motion\"", "\"motion\""), "unknown field `motion`"),
     ] {
         let error = MotionCase::from_json(&wrong).expect_err(why).to_string();
@@ -71,18 +73,18 @@ fn invalid_motion_case_is_rejected_with_reason() {
 #[test]
 fn joined_motion_proofs_store_solid_proof_as_solids() {
     let cube = ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).unwrap();
-    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.5).unwrap();
-    let rest = Motion::still(Pose::from_translation(DVec3::X * 1.5).unwrap());
+    let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.5).unwrap();
+    let rest = Motion::at_rest(Pose::from_translation(DVec3::X * 1.5).unwrap());
     let cast = MotionCast::new(cube.along(&turn), cube.along(&rest)).unwrap();
-    let solids = MotionCast::between(cube.along(&turn), cube.along(&rest)).unwrap();
-    let solids = solids.tolerating(0.0).unwrap().certified_first_contact().unwrap();
+    let solids = MotionCast::between_any(cube.along(&turn), cube.along(&rest)).unwrap();
+    let solids = solids.with_tolerance(0.0).unwrap().certified_first_contact().unwrap();
     let convex = cast.first_contact().unwrap();
     let MotionOutcome::Free(mut free) = convex.clone() else { panic!("{convex:?}") };
     // Simulate a pair whose planes do not suffice.
     free.proof.spans.clear();
     free.proof.solids = Some(Box::new(solids.proof().clone()));
     let files = [MotionOutcome::Free(free), convex].map(|of| ProofFile::of_motion(&cast, &of));
-    let bounds = files.iter().map(|file| file.check().unwrap().time().unwrap());
+    let bounds = files.iter().map(|file| file.check().unwrap().time_bounds().unwrap());
     let bounds = bounds.fold([1.0, f64::INFINITY], |all, [lower, upper]| {
         [f64::min(all[0], lower), f64::min(all[1], upper)]
     });
@@ -91,7 +93,7 @@ fn joined_motion_proofs_store_solid_proof_as_solids() {
         assert_eq!(saved.matches(kind).count(), 1, "{kind}");
     }
     let read = ProofFile::from_json(&saved).unwrap();
-    assert_eq!(read.check().unwrap().time(), Some(bounds));
+    assert_eq!(read.check().unwrap().time_bounds(), Some(bounds));
     assert_eq!(read.to_json(), saved);
     assert!(read.to_string().starts_with("of 2 pairs of bodies "), "{read}");
     let other = saved.replace("\"solids\":", "\"path\":");
@@ -104,16 +106,18 @@ fn joined_motion_proofs_store_solid_proof_as_solids() {
 fn solid_proof_does_not_cover_hull_error() {
     let block = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
     let beside = Pose::from_translation(DVec3::new(1.0 + 5e-4, -3.0, 0.0)).unwrap();
-    let (rest, slide) = (Motion::still(Pose::IDENTITY), Motion::slide(beside, DVec3::Y * 6.0));
+    let (rest, slide) =
+        (Motion::at_rest(Pose::IDENTITY), Motion::translation(beside, DVec3::Y * 6.0));
     let slide = slide.unwrap();
     let cast = MotionCast::new(block.along(&slide), block.along(&rest)).unwrap();
-    let solids = MotionCast::between(block.along(&slide), block.along(&rest)).unwrap();
-    let solids = solids.tolerating(0.0).unwrap().certified_first_contact().unwrap();
+    let solids = MotionCast::between_any(block.along(&slide), block.along(&rest)).unwrap();
+    let solids = solids.with_tolerance(0.0).unwrap().certified_first_contact().unwrap();
     let mut proof = cast.first_contact().unwrap().proof().clone();
     (proof.spans, proof.meeting) = (Vec::new(), None);
     proof.solids = Some(Box::new(solids.proof().clone()));
     assert_eq!(cast.verify(&proof).unwrap(), [1.0, f64::INFINITY]);
-    let text = MotionCase::of(&cast).to_json().replace("\"hull_error\":0.0", "\"hull_error\":1e-3");
+    let text =
+        MotionCase::from_cast(&cast).to_json().replace("\"hull_error\":0.0", "\"hull_error\":1e-3");
     let case = MotionCase::from_json(&text).unwrap();
     assert!(case.cast().verify(&proof).is_err(), "{text}");
 }

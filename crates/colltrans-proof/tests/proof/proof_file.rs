@@ -5,7 +5,7 @@ use colltrans_convex::{
 };
 use colltrans_motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
 use colltrans_proof::{ProofError, ProofFile, ProofFileError, Statement};
-use colltrans_scene::{Among, Obstacles};
+use colltrans_scene::{Obstacles, SceneQuery};
 use colltrans_solid::{AsSolid, Solid, SolidCast, SolidOptions, SolidPair, StartOverlap};
 use colltrans_testkit::oracle::among;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
@@ -111,7 +111,7 @@ fn mismatched_statement_query_or_placement_is_rejected() {
     for query in [&cast["query"], &json!({"scene": {"start_overlap": "refuse"}})] {
         assert!(is_refused(&of("query", query.clone())), "{query}");
     }
-    for query in [json!({"motions": [{"keep": 0.0}]}), json!({"motions": []})] {
+    for query in [json!({"motions": [{"min_gap": 0.0}]}), json!({"motions": []})] {
         assert!(is_refused(&of("query", query)));
     }
     assert!(is_refused(&of("placement", json!({"motions": []}))));
@@ -166,8 +166,8 @@ fn scene_proofs_of_all_families_hold() {
                     let file = assert_holds(&proof, family);
                     let count = |of: &Value| of.as_array().expect("a list").len();
                     let places = count(&file["placement"]["poses"]);
-                    assert_eq!(proof.obstacles(), Some(asked.count()));
-                    assert_eq!(places, 1 + asked.count());
+                    assert_eq!(proof.obstacle_count(), Some(asked.queried_count()));
+                    assert_eq!(places, 1 + asked.queried_count());
                     shared += usize::from(count(&file["bodies"]) + 1 < places);
                 }
             }
@@ -190,7 +190,7 @@ fn modified_scene_proof_is_rejected() {
         Pose::from_translation(DVec3::X * 30.0).expect("a pose"),
     );
     let start = Pose::from_translation(DVec3::new(5.25, 0.1, 4.0)).expect("a pose");
-    let asked = Among::new(cube.at(start), &row).expect("a scene");
+    let asked = SceneQuery::new(cube.at(start), &row).expect("a scene");
     let down = DVec3::new(0.0, 0.01, -1.0);
     let [nearest, within, stop] = [
         ProofFile::of_nearest(&asked).map(|found| found.expect("there are some")),
@@ -494,14 +494,14 @@ fn inverted_facets_of_offset_bodies_are_reported() {
             bolt_and_washer_proof(&parts, DVec3::new(0.01, 0.02, 40.0), DVec3::NEG_Z, tolerance);
         ProofFile::from_json(&file.to_string()).expect("a proof")
     };
-    assert_eq!(proof(0.25).inverted(), [0, 0]);
+    assert_eq!(proof(0.25).inverted_facets(), [0, 0]);
     assert!(!proof(0.25).to_string().contains("inside out"));
     // The washer of thickness 1 would vanish. The bottom of the cup has the same thickness, but its walls remain.
     let profile = [[0.0, 0.0], [9.0, 0.0], [9.0, 6.0], [7.0, 6.0], [7.0, 1.0], [0.0, 1.0]];
     let parts = [solid(&bolt([1.0, 2.0], [-5.0, 8.0, 9.0], 12)), solid(&turned(&profile, 12))];
     let file = bolt_and_washer_proof(&parts, DVec3::new(0.01, 0.02, 40.0), DVec3::NEG_Z, 1.5);
     let inside_out = ProofFile::from_json(&file.to_string()).expect("a proof");
-    let [bolt, cup] = inside_out.inverted();
+    let [bolt, cup] = inside_out.inverted_facets();
     assert!(cup > 0, "{cup}");
     let words =
         format!("; at this offset {bolt} facets of moving bodies and {cup} of fixed ones are");
@@ -511,10 +511,10 @@ fn inverted_facets_of_offset_bodies_are_reported() {
     obstacles.insert(parts[1].clone(), Pose::IDENTITY);
     let place = Pose::from_translation(DVec3::new(0.01, 0.02, 40.0)).expect("a pose");
     let options = SolidOptions::default().with_tolerance(Some(1.5));
-    let among = Among::new(parts[0].at(place), &obstacles).expect("a query");
+    let among = SceneQuery::new(parts[0].at(place), &obstacles).expect("a query");
     let file = ProofFile::of_scene_clearance(&among.with_solid_options(options), DVec3::NEG_Z);
     let file = file.expect("a proof");
-    assert_eq!(file.inverted(), [bolt, cup]);
+    assert_eq!(file.inverted_facets(), [bolt, cup]);
     assert!(file.to_string().contains(&words), "{file}");
 }
 
@@ -525,7 +525,7 @@ fn undecided_obstacles_are_listed_separately() {
     for x in [2.0, 3.0] {
         obstacles.insert(cube.clone(), Pose::from_translation(DVec3::X * x).expect("a pose"));
     }
-    let among = Among::new(cube.at(Pose::IDENTITY), &obstacles).expect("a query");
+    let among = SceneQuery::new(cube.at(Pose::IDENTITY), &obstacles).expect("a query");
     let file = ProofFile::of_within(&among, 2.5).expect("a proof");
     assert_eq!(
         file.to_string(),
@@ -707,10 +707,12 @@ fn path_proof_with_non_unit_axis_is_rejected() {
     {
         // A mechanism accepts an axis of any length.
         let mechanism = Mechanism::new(vec![frame(joint)]).expect("a joint");
-        let path = JointPath::evenly(vec![vec![0.0], vec![0.5]]).expect("a path");
+        let path = JointPath::at_unit_times(vec![vec![0.0], vec![0.5]]).expect("a path");
         let there = Pose::from_translation(DVec3::X * 4.0).expect("a pose");
-        let bodies =
-            vec![PathBody::carried(0, cube.at(Pose::IDENTITY)), PathBody::standing(cube.at(there))];
+        let bodies = vec![
+            PathBody::carried_by(0, cube.at(Pose::IDENTITY)),
+            PathBody::at_rest(cube.at(there)),
+        ];
         let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
         let (_, file) = ProofFile::with_path(&cast, &[]).expect("an answer");
         let mut file: Value = serde_json::from_str(&file.to_json()).expect("JSON");

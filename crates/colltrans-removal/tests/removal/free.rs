@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use colltrans_convex::{Cast, ConvexPolyhedron, Pose};
-use colltrans_removal::free::{
+use colltrans_removal::directions::{
     CellKind, CellProof, FreeDirections, FreeError, FreeOptions, FreeProof, InnerBox, Verdict,
 };
 use colltrans_solid::{Solid, SolidCast, StartOverlap};
@@ -26,7 +26,8 @@ fn union_of(pieces: &[Solid]) -> Solid {
 }
 
 fn free_directions<'a>(a: &'a Solid, b: &'a Solid, options: FreeOptions) -> FreeDirections<'a> {
-    let all = FreeDirections::of(&a.at(Pose::IDENTITY), &b.at(Pose::IDENTITY), options).unwrap();
+    let all =
+        FreeDirections::compute(&a.at(Pose::IDENTITY), &b.at(Pose::IDENTITY), options).unwrap();
     all.verify().unwrap();
     all
 }
@@ -50,9 +51,9 @@ fn lid_on_table_is_free_in_half_space() {
         (cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]), cuboid([-3.0, -2.0, -1.0], [2.0, 5.0, 0.0]));
     let all = free_directions(&lid, &table, EXACT);
     assert_area(&all, TAU);
-    assert_eq!(all.says(DVec3::new(0.3, -5.0, 0.0)), Ok(Verdict::Free));
-    assert!(matches!(all.says(DVec3::new(0.3, -5.0, -1e-60)), Ok(Verdict::Blocked(_))));
-    assert!(all.says(DVec3::ZERO).is_err());
+    assert_eq!(all.classify(DVec3::new(0.3, -5.0, 0.0)), Ok(Verdict::Free));
+    assert!(matches!(all.classify(DVec3::new(0.3, -5.0, -1e-60)), Ok(Verdict::Blocked(_))));
+    assert!(all.classify(DVec3::ZERO).is_err());
     assert!(!all.is_blocked());
 }
 
@@ -83,12 +84,12 @@ fn bar_in_rail_has_two_isolated_directions() {
     let points = all.points();
     assert_eq!(points.len(), 2, "{points:?}");
     for d in [DVec3::X, DVec3::NEG_X] {
-        let own: Vec<_> = points.iter().filter(|p| all.is_at(p, d * 3.0).unwrap()).collect();
+        let own: Vec<_> = points.iter().filter(|p| all.is_at_point(p, d * 3.0).unwrap()).collect();
         assert!(own.len() == 1 && own[0].direction == d, "{own:?}");
         for beside in [DVec3::Y, DVec3::Z].map(|by| d + by * 1e-50) {
-            assert!(!all.is_at(own[0], beside).unwrap());
+            assert!(!all.is_at_point(own[0], beside).unwrap());
         }
-        assert_eq!(all.says(d), Ok(Verdict::Free));
+        assert_eq!(all.classify(d), Ok(Verdict::Free));
     }
     // With a tolerance near rounding they are regions that are narrower than the limit for distinct corners.
     let all = free_directions(&bar, &rail, FreeOptions::DEFAULT.with_tolerance(1e-13));
@@ -115,7 +116,7 @@ fn plate_between_plates_has_full_circle() {
     for (d, expected) in
         [([3.0, 7.0, 0.0], true), ([-0.1, 0.3, 0.0], true), ([1.0, 1.0, 1e-50], false)]
     {
-        assert_eq!(all.is_on(&arcs[0], d.into()), Ok(expected));
+        assert_eq!(all.is_on_arc(&arcs[0], d.into()), Ok(expected));
     }
 }
 
@@ -149,10 +150,10 @@ fn bar_in_closed_v_groove_has_quarter_arc() {
         (DVec3::new(5.0, 7.0, 1e-50), false),
         (DVec3::new(-5.0, -7.0, 0.0), false),
     ] {
-        assert_eq!(all.is_on(arc, d), Ok(expected), "{d}");
-        assert_eq!(all.says(d).unwrap() == Verdict::Free, expected, "{d}");
+        assert_eq!(all.is_on_arc(arc, d), Ok(expected), "{d}");
+        assert_eq!(all.classify(d).unwrap() == Verdict::Free, expected, "{d}");
     }
-    let turned = FreeDirections::of(&bar.at(pose), &groove.at(pose), EXACT).unwrap();
+    let turned = FreeDirections::compute(&bar.at(pose), &groove.at(pose), EXACT).unwrap();
     turned.verify().unwrap();
     assert_area(&turned, 0.0);
     assert!(turned.arcs().len() == 1 && turned.points().is_empty(), "{:?}", turned.arcs());
@@ -179,13 +180,14 @@ fn closed_box_blocks_all_directions() {
 fn overlap_open_shell_and_negative_tolerance_are_rejected() {
     let cube = cuboid([0.0; 3], [1.0; 3]);
     let other = cuboid([0.5; 3], [2.0; 3]);
-    let place =
-        |options| FreeDirections::of(&cube.at(Pose::IDENTITY), &other.at(Pose::IDENTITY), options);
+    let place = |options| {
+        FreeDirections::compute(&cube.at(Pose::IDENTITY), &other.at(Pose::IDENTITY), options)
+    };
     assert!(matches!(place(EXACT), Err(FreeError::Overlapping { .. })));
     assert!(place(EXACT.with_start_overlap(StartOverlap::Ignore)).is_ok());
     assert!(matches!(place(EXACT.with_tolerance(-1.0)), Err(FreeError::Query(_))));
     let sheet = Solid::from_open_mesh(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]]).unwrap();
-    let all = FreeDirections::of(&sheet.at(Pose::IDENTITY), &other.at(Pose::IDENTITY), EXACT);
+    let all = FreeDirections::compute(&sheet.at(Pose::IDENTITY), &other.at(Pose::IDENTITY), EXACT);
     assert!(matches!(all, Err(FreeError::Open { which: "moving" })));
 }
 
@@ -216,8 +218,8 @@ fn common_rotation_keeps_free_area() {
         cuboid([-1.0, -1.0, 0.0], [-0.125, 5.0, 5.0]),
     ]);
     let plain = free_directions(&cube, &wall, FreeOptions::default());
-    let all =
-        FreeDirections::of(&cube.at(turned), &wall.at(turned), FreeOptions::default()).unwrap();
+    let all = FreeDirections::compute(&cube.at(turned), &wall.at(turned), FreeOptions::default())
+        .unwrap();
     all.verify().unwrap();
     let [low, high] = all.free_area();
     assert!((low - plain.free_area()[0]).abs() < 1e-9 && high >= plain.free_area()[0], "{low}");
@@ -245,7 +247,7 @@ fn free_directions_grow_with_tolerance() {
         assert!(pair[0].free_area()[1] <= pair[1].free_area()[0]);
         for cell in pair[0].cells() {
             for d in cell.corners {
-                let [tight, loose] = [0, 1].map(|k| pair[k].says(d).unwrap());
+                let [tight, loose] = [0, 1].map(|k| pair[k].classify(d).unwrap());
                 assert!(tight != Verdict::Free || loose == Verdict::Free, "{d}");
             }
         }
@@ -261,7 +263,7 @@ fn regions_of_bar_in_tube_have_four_corners() {
     for (region, sign) in regions.iter().zip([-1.0, 1.0]) {
         assert_eq!(region.corners.len(), 4, "{region:?}");
         assert!((region.center.x - sign).abs() < 1e-6);
-        assert_eq!(all.says(region.center), Ok(Verdict::Free));
+        assert_eq!(all.classify(region.center), Ok(Verdict::Free));
         // The offset bar has a total play of 0.1 on each side, and leaves after 4.9 or 6.9.
         let slope = if sign < 0.0 { 0.1 / 4.9 } else { 0.1 / 6.9 };
         for corner in &region.corners {
@@ -276,12 +278,15 @@ fn regions_of_bar_in_tube_have_four_corners() {
 #[test]
 fn work_is_bounded_for_bar_in_tube_and_limit_leaves_all_undecided() {
     let [bar, tube] = bar_in_tube();
-    let [cells, looks] = free_directions(&bar, &tube, EXACT).work();
+    let [cells, looks] = free_directions(&bar, &tube, EXACT).work_counts();
     assert!(cells <= 6 && looks < 20_000, "{cells} {looks}");
-    let [cells, looks] = free_directions(&bar, &tube, EXACT.with_tolerance(0.01)).work();
+    let [cells, looks] = free_directions(&bar, &tube, EXACT.with_tolerance(0.01)).work_counts();
     assert!(cells <= 24 && looks < 60_000, "{cells} {looks}");
-    let none =
-        FreeDirections::of(&bar.at(Pose::IDENTITY), &tube.at(Pose::IDENTITY), EXACT.with_looks(0));
+    let none = FreeDirections::compute(
+        &bar.at(Pose::IDENTITY),
+        &tube.at(Pose::IDENTITY),
+        EXACT.with_looks(0),
+    );
     let none = none.unwrap();
     assert!(!none.is_complete() && !none.is_blocked());
     assert!((none.undecided_area() - 2.0 * TAU).abs() < 1e-12);
@@ -300,7 +305,7 @@ fn random_tetrahedra_agree_with_casts() {
         let (Some(Ok(a)), Some(Ok(b))) = (tetrahedron(1.0), tetrahedron(2.0)) else { continue };
         let place = Pose::from_translation(DVec3::new(1.5, 0.5, 0.25)).unwrap();
         let (a, b) = (a.at(place), b.at(Pose::IDENTITY));
-        let Ok(all) = FreeDirections::of(&a, &b, EXACT) else { continue };
+        let Ok(all) = FreeDirections::compute(&a, &b, EXACT) else { continue };
         all.verify().unwrap();
         assert!(all.is_complete());
         let cells: Vec<_> = all.cells().collect();
@@ -309,7 +314,7 @@ fn random_tetrahedra_agree_with_casts() {
             for d in [p, p + (q - p) * rng.range(0.0, 1.0) + (r - q) * rng.range(0.0, 1.0)] {
                 let cast = Cast::<Solid>::new(a, b, d).unwrap().with_tolerance(0.0).unwrap();
                 let free = cast.clearance().unwrap().is_free();
-                assert_eq!(all.says(d).unwrap() == Verdict::Free, free, "{d}");
+                assert_eq!(all.classify(d).unwrap() == Verdict::Free, free, "{d}");
                 judged[usize::from(free)] += 1;
             }
         }
@@ -327,13 +332,13 @@ fn inner_boxes_block_cells_of_finely_tessellated_bodies() {
             Solid::from_mesh(&mesh.vertices, &mesh.faces).unwrap()
         });
     let all = free_directions(&ring, &rod, EXACT.with_depth(3));
-    assert!(all.undecided_area() < 0.05 * 2.0 * TAU && all.work()[1] < 1_500_000);
+    assert!(all.undecided_area() < 0.05 * 2.0 * TAU && all.work_counts()[1] < 1_500_000);
     let proof = all.proof();
     let inner = proof.cells.iter().filter(|cell| matches!(cell, CellProof::Inner(_))).count();
-    assert!(inner > 0, "{:?}", all.work());
+    assert!(inner > 0, "{:?}", all.work_counts());
     for cell in all.cells().filter(|cell| cell.kind == CellKind::Blocked) {
         let middle = cell.corners[0] + (cell.corners[2] - cell.corners[0]) * 0.5;
-        let Ok(Verdict::Blocked(pair)) = all.says(middle) else { panic!("{middle}") };
+        let Ok(Verdict::Blocked(pair)) = all.classify(middle) else { panic!("{middle}") };
         assert!(cell.blocked_by.is_some() && pair[0] < ring.triangles().len() as u32);
         let cast = Cast::<Solid>::new(ring.at(Pose::IDENTITY), rod.at(Pose::IDENTITY), middle);
         assert!(!cast.unwrap().with_tolerance(0.0).unwrap().clearance().unwrap().is_free());
@@ -376,7 +381,7 @@ fn free_directions_of_hulls_match_brute_force_over_facets() {
         let (a, b) = (hull(1.0), hull(2.0));
         let place = Pose::from_translation(DVec3::new(2.5, 1.5, 0.75)).unwrap();
         let (a, b) = (a.at(place), b.at(Pose::IDENTITY));
-        let Ok(all) = FreeDirections::of(&a, &b, EXACT) else { continue };
+        let Ok(all) = FreeDirections::compute(&a, &b, EXACT) else { continue };
         all.verify().unwrap();
         assert!(all.is_complete());
         let corners: Vec<DVec3> = all.cells().flat_map(|cell| cell.corners).collect();
@@ -388,7 +393,7 @@ fn free_directions_of_hulls_match_brute_force_over_facets() {
                 corners[rng.int(0, corners.len() as i64 - 1) as usize]
             };
             let free = is_free_of_all([a, b], d);
-            assert_eq!(all.says(d).unwrap() == Verdict::Free, free, "{count}: {d}");
+            assert_eq!(all.classify(d).unwrap() == Verdict::Free, free, "{count}: {d}");
             judged[usize::from(free)] += 1;
         }
     }
@@ -430,11 +435,12 @@ fn window_margin_and_corners_are_rotation_invariant() {
     for round in 0..cases(60) {
         let turn = if round == 0 { DQuat::IDENTITY } else { random.rotation() };
         let pose = Pose::new(turn, DVec3::ZERO).unwrap();
-        let all = FreeDirections::of(&cube.at(pose), &room.at(pose), FreeOptions::DEFAULT).unwrap();
+        let all =
+            FreeDirections::compute(&cube.at(pose), &room.at(pose), FreeOptions::DEFAULT).unwrap();
         let regions = all.regions();
         assert_eq!(regions.len(), 1, "{round}");
         let region = &regions[0];
-        assert_eq!(all.says(region.center), Ok(Verdict::Free), "{round}");
+        assert_eq!(all.classify(region.center), Ok(Verdict::Free), "{round}");
         // The region lies between two planes that are rotated about y. The margin is at most half of their angle.
         let half = (high - low) / 2.0;
         assert!((0.99 * half..1.001 * half).contains(&region.margin), "{round} {}", region.margin);
@@ -469,7 +475,7 @@ fn arcs_and_points_are_rotation_invariant() {
         let pose = Pose::new(turn, DVec3::new(0.5, -3.0, 2.0)).unwrap();
         for (moving, fixed, points, long, arcs) in &cases {
             let (a, b) = (moving.at(pose), fixed.at(pose));
-            let all = FreeDirections::of(&a, &b, EXACT).unwrap();
+            let all = FreeDirections::compute(&a, &b, EXACT).unwrap();
             all.verify().unwrap();
             assert_area(&all, 0.0);
             assert_eq!((all.points().len(), all.arcs().len()), (*points, *arcs), "{round}");

@@ -1,8 +1,8 @@
 //! Removal paths: closed forms, checks of proofs and of modified proofs, limits of work.
 
 use colltrans_convex::{Cast, ConvexPolyhedron, Placed, Pose};
-use colltrans_removal::free::FreeError;
-use colltrans_removal::ways::{NoWay, Order, WayOptions, WayOut, WaysOut};
+use colltrans_removal::directions::FreeError;
+use colltrans_removal::path::{NoRemovalPath, Order, RemovalOptions, RemovalPath, RemovalSearch};
 use colltrans_solid::{Solid, SolidCast};
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
@@ -38,10 +38,10 @@ fn key_and_slot(window: [f64; 2]) -> [Solid; 2] {
     [key, plate]
 }
 
-fn find_path(bodies: &[Solid; 2], pose: Pose, options: &WayOptions) -> Option<WayOut> {
+fn find_path(bodies: &[Solid; 2], pose: Pose, options: &RemovalOptions) -> Option<RemovalPath> {
     let [a, b] = bodies.each_ref().map(|solid| solid.at(pose));
-    match WaysOut::of(&a, &b, options).unwrap() {
-        WaysOut::Found(way) => {
+    match RemovalSearch::search(&a, &b, options).unwrap() {
+        RemovalSearch::Found(way) => {
             way.verify(&[a, b]).unwrap();
             Some(way)
         }
@@ -52,7 +52,7 @@ fn find_path(bodies: &[Solid; 2], pose: Pose, options: &WayOptions) -> Option<Wa
 #[test]
 fn key_leaves_through_window_in_two_legs() {
     let bodies = key_and_slot([14.0, 17.0]);
-    let way = find_path(&bodies, Pose::IDENTITY, &WayOptions::default()).unwrap();
+    let way = find_path(&bodies, Pose::IDENTITY, &RemovalOptions::default()).unwrap();
     assert_eq!(way.legs.len(), 2);
     assert_eq!(way.legs[0].direction, DVec3::X);
     // The bar, which extends from 0.5 to 2.5, is below the window.
@@ -67,7 +67,8 @@ fn window_as_long_as_key_is_found_when_rotated() {
     let bodies = key_and_slot([14.0, 16.0]);
     let turn = DMat3::from_euler(EulerRot::XYZ, 0.3, 0.6, 0.9);
     for pose in [Pose::IDENTITY, Pose::from_matrix(turn, DVec3::ZERO).unwrap()] {
-        let way = find_path(&bodies, pose, &WayOptions::default().with_tolerance(1e-5)).unwrap();
+        let way =
+            find_path(&bodies, pose, &RemovalOptions::default().with_tolerance(1e-5)).unwrap();
         assert_eq!(way.legs.len(), 2);
         assert!((way.legs[0].travel - 13.5).abs() <= 1e-5, "{}", way.legs[0].travel);
     }
@@ -78,17 +79,20 @@ fn path_through_short_window_is_proven_impossible() {
     let bodies = key_and_slot([14.0, 15.9]);
     let [a, b] = bodies.each_ref().map(|solid| solid.at(Pose::IDENTITY));
     let proof = prove_no_path(&a, &b);
-    assert!(proof.cells() < 4_000, "{}", proof.cells());
+    assert!(proof.cell_count() < 4_000, "{}", proof.cell_count());
     // Without cells the answer only reports the amounts of work.
-    let options = WayOptions::default().with_places(20).with_cells(0);
-    let WaysOut::NotFound { searched } = WaysOut::of(&a, &b, &options).unwrap() else {
+    let options = RemovalOptions::default().with_places(20).with_cells(0);
+    let RemovalSearch::NotFound { searched } = RemovalSearch::search(&a, &b, &options).unwrap()
+    else {
         panic!("no path exists")
     };
     assert!(searched.places > 0 && searched.directions == 6, "{searched:?}");
 }
 
-fn prove_no_path(a: &Placed<'_, Solid>, b: &Placed<'_, Solid>) -> NoWay {
-    let WaysOut::Proven(proof) = WaysOut::of(a, b, &WayOptions::default()).unwrap() else {
+fn prove_no_path(a: &Placed<'_, Solid>, b: &Placed<'_, Solid>) -> NoRemovalPath {
+    let RemovalSearch::Proven(proof) =
+        RemovalSearch::search(a, b, &RemovalOptions::default()).unwrap()
+    else {
         panic!("no path exists")
     };
     proof.verify(a, b).unwrap();
@@ -97,14 +101,18 @@ fn prove_no_path(a: &Placed<'_, Solid>, b: &Placed<'_, Solid>) -> NoWay {
 
 /// Checks that the bodies overlap in blocked cells: at the lowest corner of every second cell, and at a
 /// random point of the others.
-fn assert_overlap_in_blocked_cells(proof: &NoWay, a: &Placed<'_, Solid>, b: &Placed<'_, Solid>) {
+fn assert_overlap_in_blocked_cells(
+    proof: &NoRemovalPath,
+    a: &Placed<'_, Solid>,
+    b: &Placed<'_, Solid>,
+) {
     let mut random = Random::new(7);
     for (k, &(cell, _)) in proof.walls.iter().enumerate() {
         let [low, high] = proof.room.corners(cell);
         let share = DVec3::new(random.unit(), random.unit(), random.unit());
         let place = if k % 2 == 0 { low + share * (high - low) } else { low };
         let by = proof.room.axes * place;
-        let moved = a.body.at(a.pose.translated(by).unwrap());
+        let moved = a.body.at(a.pose.translated_by(by).unwrap());
         let cast = Cast::new(moved, *b, DVec3::Z).unwrap();
         assert!(cast.with_tolerance(proof.tolerance).unwrap().overlaps(), "{cell:?} {by}");
     }
@@ -163,12 +171,13 @@ fn cube_leaves_chambers_through_large_holes_and_small_ones_are_proven_closed() {
     ] {
         let walls = chambers(two, holes);
         let proof = prove_no_path(&cube.at(at), &walls.at(at));
-        assert!(proof.cells() < 4_000, "{holes:?}: {}", proof.cells());
+        assert!(proof.cell_count() < 4_000, "{holes:?}: {}", proof.cell_count());
         assert_overlap_in_blocked_cells(&proof, &cube.at(at), &walls.at(at));
     }
     // If two coordinates must be right at once, the path to the hole follows cells without contact.
     for (two, holes, legs) in [(false, [1.1, 0.0, 0.0], 3), (true, [0.0, 1.1, 1.5], 5)] {
-        let found = find_path(&[cube.clone(), chambers(two, holes)], at, &WayOptions::default());
+        let found =
+            find_path(&[cube.clone(), chambers(two, holes)], at, &RemovalOptions::default());
         let way = found.expect("a way");
         assert!((2..=legs).contains(&way.legs.len()), "{holes:?}: {:?}", way.legs.len());
     }
@@ -191,7 +200,7 @@ fn rotated_bodies_in_closed_rooms_have_proof() {
             let [p, q] = [(turns[0], middle), (turns[1], DVec3::ZERO)]
                 .map(|(turn, by)| Pose::from_matrix(turn, by).unwrap());
             let proof = prove_no_path(&cube.at(p), &walls.at(q));
-            assert!(proof.cells() < 20_000, "{holes:?} {round}: {}", proof.cells());
+            assert!(proof.cell_count() < 20_000, "{holes:?} {round}: {}", proof.cell_count());
             assert_overlap_in_blocked_cells(&proof, &cube.at(p), &walls.at(q));
             // The proof does not hold for a body in another place.
             let other = Pose::from_matrix(turns[0], middle + room * DVec3::X * 1.25).unwrap();
@@ -218,13 +227,14 @@ fn randomly_rotated_rooms_are_proven_closed_or_left() {
             let pose = Pose::new(random.rotation(), 3.0 * random.direction()).unwrap();
             let (a, b) = (cube.at(pose), walls.at(pose));
             if !closed {
-                let found = find_path(&[cube.clone(), walls.clone()], pose, &WayOptions::default());
+                let found =
+                    find_path(&[cube.clone(), walls.clone()], pose, &RemovalOptions::default());
                 assert!(found.is_some(), "{holes:?} {round}");
                 continue;
             }
             let proof = prove_no_path(&a, &b);
             // About as many cells as for axis-aligned rooms.
-            assert!(proof.cells() < 4_000, "{holes:?} {round}: {}", proof.cells());
+            assert!(proof.cell_count() < 4_000, "{holes:?} {round}: {}", proof.cell_count());
             assert_overlap_in_blocked_cells(&proof, &a, &b);
             // The same cells along other axes, or along dependent ones, prove nothing.
             let [x, y, z] = [0, 1, 2].map(|k| proof.room.axes.col(k));
@@ -277,11 +287,12 @@ fn sheared_room_is_proven_closed_or_left_through_hole() {
         let (a, b) = (cube.at(pose), walls.at(pose));
         if open {
             assert!(
-                find_path(&[cube.clone(), walls.clone()], pose, &WayOptions::default()).is_some()
+                find_path(&[cube.clone(), walls.clone()], pose, &RemovalOptions::default())
+                    .is_some()
             );
         } else {
             let proof = prove_no_path(&a, &b);
-            assert!(proof.cells() < 4_000, "{}", proof.cells());
+            assert!(proof.cell_count() < 4_000, "{}", proof.cell_count());
             assert_overlap_in_blocked_cells(&proof, &a, &b);
         }
     }
@@ -293,7 +304,7 @@ fn modified_no_path_proof_is_rejected() {
     let (walls, at) = (chambers(false, [0.9, 0.0, 0.0]), Pose::IDENTITY);
     let (a, b) = (cube.at(at), walls.at(at));
     let proof = prove_no_path(&a, &b);
-    let refused = |change: &dyn Fn(&mut NoWay)| {
+    let refused = |change: &dyn Fn(&mut NoRemovalPath)| {
         let mut changed = proof.clone();
         change(&mut changed);
         assert!(matches!(changed.verify(&a, &b), Err(FreeError::NotProven(_))));
@@ -326,9 +337,9 @@ fn modified_no_path_proof_is_rejected() {
 #[test]
 fn modified_leg_is_rejected() {
     let bodies = key_and_slot([14.0, 17.0]);
-    let way = find_path(&bodies, Pose::IDENTITY, &WayOptions::default()).unwrap();
+    let way = find_path(&bodies, Pose::IDENTITY, &RemovalOptions::default()).unwrap();
     let placed = bodies.each_ref().map(|solid| solid.at(Pose::IDENTITY));
-    let refused = |change: &dyn Fn(&mut WayOut)| {
+    let refused = |change: &dyn Fn(&mut RemovalPath)| {
         let mut changed = way.clone();
         change(&mut changed);
         assert!(matches!(changed.verify(&placed), Err(FreeError::NotProven(_))));
@@ -352,7 +363,8 @@ fn blocking_body_is_moved_first() {
     let lid = union_of_blocks(&[[[0.1, -0.4, 2.2], [3.9, 3.4, 2.8]]]);
     let tray = union_of_blocks(&TRAY_WITH_GROOVES);
     let placed = [&cube, &lid, &tray].map(|solid| solid.at(Pose::IDENTITY));
-    let WaysOut::Found(way) = WaysOut::among(&placed, &[2], &WayOptions::default(), None).unwrap()
+    let RemovalSearch::Found(way) =
+        RemovalSearch::search_among(&placed, &[2], &RemovalOptions::default(), None).unwrap()
     else {
         panic!("the lid moves sideways, then the cube moves up")
     };
@@ -366,7 +378,8 @@ fn cancelled_search_returns_error() {
     let bodies = key_and_slot([14.0, 17.0]);
     let placed = bodies.each_ref().map(|solid| solid.at(Pose::IDENTITY));
     let flag = std::sync::atomic::AtomicBool::new(true);
-    let answer = WaysOut::among(&placed, &[1], &WayOptions::default(), Some(&flag));
+    let answer =
+        RemovalSearch::search_among(&placed, &[1], &RemovalOptions::default(), Some(&flag));
     assert_eq!(answer, Err(FreeError::Cancelled));
 }
 
@@ -405,7 +418,7 @@ fn skew_last_leg_is_found_in_free_directions() {
     let at = Pose::IDENTITY;
     // With axes as the only candidates, the direction of the shaft is not a candidate.
     let axes = vec![DVec3::X, DVec3::Y, DVec3::Z];
-    let options = WayOptions::default().with_directions(axes).with_legs(2);
+    let options = RemovalOptions::default().with_directions(axes).with_legs(2);
     let way =
         find_path(&[cube, channel], at, &options).expect("along the channel, then up the shaft");
     assert_eq!(way.legs.len(), 2);
@@ -417,7 +430,7 @@ fn skew_last_leg_is_found_in_free_directions() {
 #[test]
 fn both_orders_find_two_leg_path() {
     for order in [Order::FewestLegs, Order::NewestFirst] {
-        let options = WayOptions::default().with_order(order);
+        let options = RemovalOptions::default().with_order(order);
         let way = find_path(&key_and_slot([14.0, 17.0]), Pose::IDENTITY, &options).unwrap();
         assert_eq!(way.legs.len(), 2);
     }
@@ -428,10 +441,14 @@ fn fewest_legs_order_prefers_shorter_path_to_path_through_cells() {
     // A proof is attempted while unexplored placements remain, and its cells lead outside in four legs.
     let cubes = Cubes::random(&mut Random::new(450_971_566_688));
     let [a, b] = &cubes.solids()[..] else { panic!("two bodies") };
-    let options =
-        WayOptions::default().with_order(Order::FewestLegs).with_tolerance(1e-5).with_cells(2_000);
+    let options = RemovalOptions::default()
+        .with_order(Order::FewestLegs)
+        .with_tolerance(1e-5)
+        .with_cells(2_000);
     let placed = [a.at(Pose::IDENTITY), b.at(Pose::IDENTITY)];
-    let WaysOut::Found(way) = WaysOut::among(&placed, &[], &options, None).unwrap() else {
+    let RemovalSearch::Found(way) =
+        RemovalSearch::search_among(&placed, &[], &options, None).unwrap()
+    else {
         panic!("a path exists")
     };
     assert_eq!(way.legs.len(), cubes.level().unwrap().moves);
@@ -442,12 +459,12 @@ fn fewest_legs_order_prefers_shorter_path_to_path_through_cells() {
 fn zero_direction_and_negative_tolerance_are_rejected_with_given_value() {
     let [key, plate] = key_and_slot([14.0, 17.0]);
     let placed = [key.at(Pose::IDENTITY), plate.at(Pose::IDENTITY)];
-    let refused = |options: &WayOptions| {
-        WaysOut::among(&placed, &[], options, None).expect_err("refused").to_string()
+    let refused = |options: &RemovalOptions| {
+        RemovalSearch::search_among(&placed, &[], options, None).expect_err("refused").to_string()
     };
-    let none = WayOptions::default().with_directions(vec![DVec3::X, DVec3::ZERO]);
+    let none = RemovalOptions::default().with_directions(vec![DVec3::X, DVec3::ZERO]);
     assert!(refused(&none).contains("direction"), "{}", refused(&none));
-    let negative = WayOptions::default().with_tolerance(-1.0);
+    let negative = RemovalOptions::default().with_tolerance(-1.0);
     assert!(refused(&negative).contains("-1"), "{}", refused(&negative));
 }
 
@@ -457,12 +474,13 @@ fn overlapping_bodies_move_together_in_groups_of_three() {
     // A knob that overlaps the key's stem.
     let knob = union_of_blocks(&[[[0.4, -0.6, 2.5], [2.6, 0.6, 3.5]]]);
     let placed = [&key, &knob, &plate].map(|solid| solid.at(Pose::IDENTITY));
-    let WaysOut::Found(way) = WaysOut::among(&placed, &[], &WayOptions::default(), None).unwrap()
+    let RemovalSearch::Found(way) =
+        RemovalSearch::search_among(&placed, &[], &RemovalOptions::default(), None).unwrap()
     else {
         panic!("the knob leaves together with the key")
     };
     way.verify(&placed).unwrap();
     assert!(way.legs.iter().all(|leg| leg.bodies == [0, 1]), "{:?}", way.legs);
-    let two = WaysOut::among(&placed[..2], &[], &WayOptions::default(), None);
+    let two = RemovalSearch::search_among(&placed[..2], &[], &RemovalOptions::default(), None);
     assert!(matches!(two, Err(FreeError::Overlapping { .. })));
 }

@@ -1,7 +1,7 @@
-//! A map of the faces that lines of one direction enter.
+//! A map of the faces of `M0` that lines along one direction enter.
 //!
-//! It stores the corners in coordinates of the direction, face by face, and the planes at the silhouette. A grid over
-//! the shadow has a start face for each walk.
+//! The map stores the corners of these faces, in a frame whose third axis is the direction, and the planes at the
+//! silhouette. A grid over the shadow stores, for each cell, the face at which a walk starts.
 
 use glam::{DVec2, DVec3};
 
@@ -14,14 +14,14 @@ use super::search::{
     LineView, MIN_ENTRY_COMPONENT, WalkEnd, coordinates_along, walk_faces, walk_steps,
 };
 use colltrans_convex::answer::{Clearance, ContactRange, Outcome};
-use colltrans_convex::cast::{Cast, clearance_of, contact_range_by_casts};
+use colltrans_convex::cast::{Cast, clearance_by_casts, contact_range_by_casts};
 use colltrans_convex::setting::check_direction;
 use colltrans_convex::setting::error::QueryError;
 
-/// Casts of one pair with fixed rotations along one direction: [`FixedRotations::along`]. Casts along another direction
+/// Casts of one pair with fixed rotations along one direction: [`FixedRotations::for_direction`]. Casts along another direction
 /// are answered by [`FixedRotations`].
 #[derive(Debug)]
-pub struct Approach<'f, 'a> {
+pub struct DirectionMap<'f, 'a> {
     rotations: &'f FixedRotations<'a>,
     direction: DVec3,
     axes: [DVec3; 3],
@@ -68,7 +68,7 @@ struct Grid {
 /// Margin of the grid around the shadow, relative to its size.
 const GRID_MARGIN: f64 = 0.25;
 
-impl<'f, 'a> Approach<'f, 'a> {
+impl<'f, 'a> DirectionMap<'f, 'a> {
     /// Builds the map of a direction.
     pub(super) fn new(
         rotations: &'f FixedRotations<'a>,
@@ -107,7 +107,7 @@ impl<'f, 'a> Approach<'f, 'a> {
     /// # Errors
     /// Returns the errors of [`Cast::first_contact`].
     pub fn clearance(&self, cast: &Cast<'a>) -> Result<Clearance, QueryError> {
-        clearance_of(cast, |cast| self.first_contact(cast))
+        clearance_by_casts(cast, |cast| self.first_contact(cast))
     }
 
     /// Returns the answer by the map, or `None` if it is not certain.

@@ -3,7 +3,7 @@
 //! The inertia ellipsoid of `M0` is transformed to the unit ball around its centre. The direction from the centre to
 //! the point where the line enters the ball is looked up in a table over the sides of a cube. The table has the face
 //! through which the ray in this direction leaves. A line that misses the ball, or nearly does, is moved to nine tenths
-//! of its radius. The walk to the silhouette then starts on an entered face.
+//! of its radius. If the guessed face is not an entered one, the search climbs from it to one that is.
 
 use glam::{DMat3, DVec3};
 

@@ -58,8 +58,9 @@ impl Faces {
             q.iter().flat_map(|q| p.iter().map(move |p| *q - *p)).collect();
         let hull =
             ConvexPolyhedron::from_points(&differences).ok().filter(|h| h.dimension() == 3)?;
-        let pair =
-            |input: usize| VertexPair::of((input % p.len()) as u32, (input / p.len()) as u32);
+        let pair = |input: usize| {
+            VertexPair::from_indices((input % p.len()) as u32, (input / p.len()) as u32)
+        };
         let pairs: Vec<_> = hull.input_indices().iter().map(|i| pair(i.index())).collect();
         let half_edges = hull.half_edges();
         let (mut planes, mut starts, mut sides) = (Vec::new(), vec![0], Vec::new());

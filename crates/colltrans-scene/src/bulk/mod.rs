@@ -2,7 +2,7 @@
 //!
 //! - `M0` is the Minkowski difference `M` without translations: `M = M0 + offset` with `offset = t_Q - t_P`. It is
 //!   constant while the rotations are.
-//! - The faces of `M0` are computed once (`faces`). A cast then intersects a line with a known polytope.
+//! - The faces of `M0` are computed once (`faces`). A cast then intersects a line with this polytope.
 //! - `search` walks from a guess (`entry_guess`) to the face that the line enters, or to the silhouette. `approach` has
 //!   a map for one direction. `proof` builds the answer.
 //! - Invariant: the faces are only proposals. The bound of a plane is computed from all vertices of both bodies, and
@@ -17,10 +17,10 @@ mod search;
 
 use glam::DVec3;
 
-pub use approach::Approach;
+pub use approach::DirectionMap;
 use colltrans_convex::answer::{Clearance, ContactRange, Outcome, Solver};
 use colltrans_convex::body::{ConvexPolyhedron, Placed, Pose};
-use colltrans_convex::cast::{Cast, clearance_of, contact_range_by_casts};
+use colltrans_convex::cast::{Cast, clearance_by_casts, contact_range_by_casts};
 use colltrans_convex::setting::TwoBodies;
 use colltrans_convex::setting::error::QueryError;
 use faces::Faces;
@@ -37,15 +37,16 @@ const MIN_CASTS: usize = 500;
 
 /// Two bodies with fixed rotations, for casts from many positions and along many directions.
 ///
-/// The faces of the Minkowski difference are computed once, in about the time of some hundred casts
+/// The faces of the Minkowski difference are computed once. This pays off after about 500 casts plus one for each
+/// vertex pair
 /// ([`Self::pays_after`]). A cast of bodies with up to 64 vertices then takes at most a third of the time. A cast along
 /// a direction that is used repeatedly ([`Self::along`]) takes a sixth. Answers have the certificates of ordinary
 /// casts, and [`Cast::verify`] checks them.
 ///
 /// These casts are answered by the ordinary search instead:
 /// - casts of other bodies or other rotations,
-/// - casts whose answer the faces do not make certain: bodies that only touch or graze, a line through an edge of the
-///   difference,
+/// - casts that the faces do not decide with certainty, because the bodies only touch or graze, or because the line
+///   passes through an edge of the difference,
 /// - casts of flat bodies, and of bodies with more than 16,384 vertex pairs,
 /// - casts with [`Solver::Cta`] or a minimum gap.
 ///
@@ -85,27 +86,30 @@ pub struct FixedRotations<'a> {
 impl<'a> FixedRotations<'a> {
     /// Computes the faces. Only the rotations of the poses matter.
     pub fn new(moving: Placed<'a>, fixed: Placed<'a>) -> Self {
-        let still =
-            |of: Placed<'a>| Placed { pose: Pose::checked(of.pose.matrix(), DVec3::ZERO), ..of };
+        let still = |of: Placed<'a>| Placed {
+            pose: Pose::from_checked_entries(of.pose.matrix(), DVec3::ZERO),
+            ..of
+        };
         let bodies = TwoBodies::new(still(moving), still(fixed));
-        let faces = Self::pays_after(moving.body, fixed.body).and_then(|_| Faces::new(&bodies));
+        let faces =
+            Self::break_even_casts(moving.body, fixed.body).and_then(|_| Faces::new(&bodies));
         Self { bodies, faces }
     }
 
-    /// Returns about the number of casts after which computing the faces pays off. Returns `None` for bodies whose
-    /// faces are not computed.
-    pub fn pays_after(moving: &ConvexPolyhedron, fixed: &ConvexPolyhedron) -> Option<usize> {
+    /// Returns the approximate number of casts after which computing the faces pays off. Returns `None` for bodies
+    /// whose faces are not computed.
+    pub fn break_even_casts(moving: &ConvexPolyhedron, fixed: &ConvexPolyhedron) -> Option<usize> {
         let pairs = moving.vertices().len() * fixed.vertices().len();
         let flat = moving.dimension().max(fixed.dimension()) < 3;
         (pairs <= MAX_VERTEX_PAIRS && !flat).then_some(MIN_CASTS + pairs)
     }
 
-    /// Returns a map for casts along one direction. It takes less than a tenth of the time of the faces.
+    /// Builds a map for casts along one direction. It takes less than a tenth of the time of the faces.
     ///
     /// # Errors
     /// Returns [`QueryError::Direction`] if the direction is zero, not finite or out of range.
-    pub fn along(&self, direction: DVec3) -> Result<Approach<'_, 'a>, QueryError> {
-        Approach::new(self, direction)
+    pub fn for_direction(&self, direction: DVec3) -> Result<DirectionMap<'_, 'a>, QueryError> {
+        DirectionMap::new(self, direction)
     }
 
     /// Computes the answer of [`Cast::first_contact`].
@@ -132,7 +136,7 @@ impl<'a> FixedRotations<'a> {
     /// # Errors
     /// Returns the errors of [`Cast::first_contact`].
     pub fn clearance(&self, cast: &Cast<'a>) -> Result<Clearance, QueryError> {
-        clearance_of(cast, |cast| self.first_contact(cast))
+        clearance_by_casts(cast, |cast| self.first_contact(cast))
     }
 
     /// Returns the answer by the faces, or `None` if they do not make it certain.
@@ -152,7 +156,7 @@ impl<'a> FixedRotations<'a> {
             && std::ptr::eq(requested.fixed, stored.fixed)
             && requested.moving_matrix == stored.moving_matrix
             && requested.fixed_matrix == stored.fixed_matrix;
-        let plain = cast.options.keep == 0.0 && cast.options.solver != Solver::Cta;
+        let plain = cast.options.min_gap == 0.0 && cast.options.solver != Solver::Cta;
         self.faces.as_ref().filter(|_| same && plain)
     }
 }

@@ -52,9 +52,9 @@ impl<'c> Line<'c> {
     #[inline]
     pub(super) fn from_cast(cast: &'c Cast) -> Self {
         let noise = cast.setting.noise();
-        let tolerance = cast.options.graze_tolerance.max(noise.touching());
-        let ample = tolerance + CONFIRMATION_NOISES * noise.point();
-        let margins = LineMargins { noise: noise.point(), ample_square: ample * ample };
+        let tolerance = cast.options.graze_tolerance.max(noise.touching_distance());
+        let ample = tolerance + CONFIRMATION_NOISES * noise.point_error();
+        let margins = LineMargins { noise: noise.point_error(), ample_square: ample * ample };
         Self { setting: &cast.setting, noise, margins }
     }
 
@@ -73,7 +73,8 @@ pub(super) fn direction_axes(unit: DVec3) -> [DVec3; 3] {
 }
 
 /// Builds the contact in a face that the line certainly enters. `of` is the index of the face, `view` and `face` are
-/// its view relative to the line. Returns `None` if the face is too uneven or too steep.
+/// its view relative to the line. Returns `None` if the face is too uneven or too steep, or if the bounds are too far
+/// apart.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "moved about, an outcome goes through memory")]
 pub(super) fn build_contact<S: LineView>(
@@ -86,7 +87,7 @@ pub(super) fn build_contact<S: LineView>(
     let Line { setting, noise, .. } = *line;
     let &Plane { normal, min_coordinate, thickness, lowest } = faces.plane(of);
     let steepness = normal.dot(setting.direction);
-    if !(thickness <= MAX_THICKNESS_NOISES * noise.point()
+    if !(thickness <= MAX_THICKNESS_NOISES * noise.point_error()
         && steepness > UNIT_VECTOR * setting.length)
     {
         return None;
@@ -95,29 +96,29 @@ pub(super) fn build_contact<S: LineView>(
     let estimate = height / setting.length;
     let distance = min_coordinate + normal.dot(setting.offset);
     let per = 1.0 / steepness;
-    let gap = noise.gap(0.0, 0.0) * per;
+    let gap = noise.max_bound_gap(0.0, 0.0) * per;
     // This comparison fails for NaN.
     let is_tight = estimate - distance / steepness <= gap;
     if !is_tight {
         return None;
     }
-    let lowered = noise.lowered() + faces.input_excess;
+    let lowered = noise.lower_bound_margin() + faces.input_excess;
     let lower = ((distance - lowered) / steepness).next_down();
-    let upper = (estimate + noise.raised() / steepness).next_up();
+    let upper = (estimate + noise.upper_bound_margin() / steepness).next_up();
     let certificate = Certificate {
         normal,
         lower,
         pairs: corners.map(|side| faces.pair_at_side(of, side)),
         weights,
         upper,
-        rounding: gap + (noise.raised() + lowered) * per,
+        rounding: gap + (noise.upper_bound_margin() + lowered) * per,
     };
     let translation = estimate.max(lower);
     Some(Contact::new(translation, normal, lowest, certificate, Solver::Portal, steps))
 }
 
-/// Finds the triangle at the first corner of a face that the line enters. Returns its corners, their weights and the
-/// height.
+/// Splits a face into triangles with its first corner in common, and finds the triangle that the line enters. Returns
+/// its corners, their weights and the height.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "passed through memory they stall their reader")]
 fn entered_triangle<S: LineView>(view: &S, sides: &[S::Side]) -> ([usize; 3], [f64; 3], f64) {
@@ -176,9 +177,9 @@ pub(super) fn build_separation(
     steps: Steps,
 ) -> Option<Separated> {
     let noise = line.noise;
-    let lowered = noise.lowered() + line.setting.input_excess();
+    let lowered = noise.lower_bound_margin() + line.setting.input_excess();
     let margin = (silhouette.min_coordinate + silhouette.normal.dot(line.setting.offset)) - lowered;
     let certificate = Separation { normal: silhouette.normal, margin };
-    let certain = margin > 2.0 * noise.touching();
+    let certain = margin > 2.0 * noise.touching_distance();
     certain.then_some(Separated::new(certificate, Solver::Portal, steps))
 }

@@ -37,8 +37,8 @@ pub(super) enum WalkEnd {
     Silhouette { face: u32, side: usize },
 }
 
-/// Walks from an entered face. Returns the end and the number of visited faces. Returns `None` if the walk takes too
-/// many steps, because rounding errors make it cyclic.
+/// Walks from an entered face. Returns the end and the number of visited faces. Returns `None` if the walk does not end
+/// within [`MAX_WALK_FACES`] faces, for example if rounding errors make it cyclic.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "passed through memory its end stalls its reader")]
 pub(super) fn walk_faces(

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use colltrans_convex::{CertificateError, ConvexPolyhedron, ObstacleId, Options, Pose, QueryError};
-use colltrans_scene::{Among, Obstacles};
+use colltrans_scene::{Obstacles, SceneQuery};
 use colltrans_solid::{ByKind, Solid};
 use colltrans_testkit::bodies::{at_xyz as at, block as cuboid};
 use colltrans_testkit::cases;
@@ -44,7 +44,7 @@ fn error_names_obstacle_that_vanishes_with_tolerance() {
     // Rotated bodies have a positive default tolerance.
     let turned = |z: f64| {
         let pose = Pose::new(DQuat::from_rotation_z(0.5), DVec3::Z * z).expect("a pose");
-        Among::new(cube.at(pose), &scene).expect("a solid")
+        SceneQuery::new(cube.at(pose), &scene).expect("a solid")
     };
     let refused = turned(5.0).clearance(DVec3::Z).expect_err("nothing of it remains");
     let QueryError::Obstacle { obstacle, reason } = &refused else { panic!("{refused}") };
@@ -69,7 +69,7 @@ fn oblique_obstacle_stops_body_before_wall_behind_it() {
     let mut scene = Obstacles::new();
     let [_, ramp] = [wall, ramp].map(|body| scene.insert(body, Pose::IDENTITY));
     let options = colltrans_solid::SolidOptions::default().with_tolerance(0.02);
-    let query = Among::new(cube.at(Pose::IDENTITY), &scene).expect("solids");
+    let query = SceneQuery::new(cube.at(Pose::IDENTITY), &scene).expect("solids");
     let query = query.with_solid_options(options);
     let found = query.clearance(DVec3::X).expect("an answer");
     assert_eq!(found.stop.map(|(id, _)| id), Some(ramp));
@@ -90,7 +90,7 @@ fn queries_visit_few_boxes_after_moves() {
         for _ in 0..200 {
             let place = (random.vector() * 0.5 + DVec3::splat(0.5)) * 22.0;
             let pose = Pose::new(random.rotation(), place).expect("a pose");
-            let query = Among::new(small.at(pose), scene).expect("boxes");
+            let query = SceneQuery::new(small.at(pose), scene).expect("boxes");
             let steps = [
                 query.nearest().expect("an answer").expect("some").steps,
                 query.within(0.3).expect("an answer").steps,
@@ -112,7 +112,7 @@ fn queries_visit_few_boxes_after_moves() {
         for (k, id) in ids.iter().enumerate() {
             let pose = poses[(k * 7_919 + round) % poses.len()];
             scene
-                .set_pose(*id, pose.translated(random.vector() * 0.2).expect("a pose"))
+                .set_pose(*id, pose.translated_by(random.vector() * 0.2).expect("a pose"))
                 .expect("there");
         }
     }
@@ -140,7 +140,7 @@ fn single_insertions_match_bulk_insertion() {
         let place = random.vector() * 6.0 + DVec3::splat(6.0);
         let pose = Pose::new(random.rotation(), place).expect("a pose");
         let found = [&all, &slowly].map(|scene| {
-            let query = Among::new(small.at(pose), scene).expect("boxes");
+            let query = SceneQuery::new(small.at(pose), scene).expect("boxes");
             query.nearest().expect("an answer").expect("some")
         });
         assert_eq!(found[0].obstacle, found[1].obstacle);
@@ -157,7 +157,7 @@ fn first_inserted_of_equal_obstacles_is_reported() {
     let ids: Vec<_> =
         [3.0, -3.0, 3.0].into_iter().map(|x| scene.insert(cube.clone(), at(x, 0.0, 0.0))).collect();
     let nearest = |scene: &Obstacles| {
-        let query = Among::new(cube.at(Pose::IDENTITY), scene).expect("boxes");
+        let query = SceneQuery::new(cube.at(Pose::IDENTITY), scene).expect("boxes");
         query.nearest().expect("an answer").map(|nearest| nearest.obstacle)
     };
     assert_eq!(nearest(&scene), Some(ids[0]));
@@ -170,7 +170,7 @@ fn first_inserted_of_equal_obstacles_is_reported() {
     let newest = scene.insert(cube.clone(), at(3.0, 0.0, 0.0));
     assert_eq!((nearest(&scene), newest), (Some(ids[1]), ObstacleId(3)));
     let own = |id| id != newest;
-    let query = Among::new(cube.at(Pose::IDENTITY), &scene).expect("boxes").ignoring(&own);
+    let query = SceneQuery::new(cube.at(Pose::IDENTITY), &scene).expect("boxes").ignoring(&own);
     assert_eq!(query.nearest().expect("an answer").map(|n| n.obstacle), Some(newest));
 }
 
@@ -180,14 +180,15 @@ fn invalid_input_is_rejected() {
     let point = ConvexPolyhedron::from_points(&[DVec3::ZERO]).expect("a point");
     let solid = Solid::from_convex(&cube).expect("a solid");
     let mut scene = Obstacles::new();
-    let none = Among::new(point.at(Pose::IDENTITY), &scene).expect("no obstacles");
+    let none = SceneQuery::new(point.at(Pose::IDENTITY), &scene).expect("no obstacles");
     assert_eq!(none.nearest(), Ok(None));
     assert!(none.within(1.0).expect("none").closer.is_empty());
     assert_eq!(none.clearance(DVec3::X).map(|c| (c.lower, c.stop)), Ok((f64::INFINITY, None)));
 
     let id = scene.insert(solid.clone(), at(3.0, 0.0, 0.0));
-    assert!(Among::new(point.at(Pose::IDENTITY), &scene).is_ok());
-    let query = Among::new(cube.at(Pose::IDENTITY), &scene).expect("a convex body and a solid");
+    assert!(SceneQuery::new(point.at(Pose::IDENTITY), &scene).is_ok());
+    let query =
+        SceneQuery::new(cube.at(Pose::IDENTITY), &scene).expect("a convex body and a solid");
     assert!(matches!(query.nearest(), Ok(Some(n)) if matches!(n.distance, ByKind::Solid(_))));
     for length in [-1.0, f64::NAN] {
         assert!(matches!(query.within(length), Err(QueryError::Length { .. })));
@@ -202,9 +203,9 @@ fn invalid_input_is_rejected() {
     assert_eq!(query.verify(&proof), Err(unknown));
 
     let point_id = scene.insert(point, Pose::IDENTITY);
-    assert!(Among::new(solid.at(Pose::IDENTITY), &scene).is_ok());
+    assert!(SceneQuery::new(solid.at(Pose::IDENTITY), &scene).is_ok());
     assert!(scene.remove(point_id).is_some() && scene.remove(point_id).is_none());
-    assert!(Among::new(solid.at(Pose::IDENTITY), &scene).is_ok());
+    assert!(SceneQuery::new(solid.at(Pose::IDENTITY), &scene).is_ok());
     assert_eq!(scene.set_pose(point_id, Pose::IDENTITY).unwrap_err().id, point_id);
     let moves = [(id, at(9.0, 0.0, 0.0)), (point_id, Pose::IDENTITY)];
     assert!(scene.set_poses(&moves).is_err());
@@ -223,7 +224,7 @@ fn bounds_are_narrow_far_from_origin() {
         scene.insert(cube.clone(), pose.expect("a pose"));
     }
     let above = Pose::new(turn, far + turn * DVec3::new(6.0, 0.0, 1.25)).expect("a pose");
-    let query = Among::new(cube.at(above), &scene).expect("boxes");
+    let query = SceneQuery::new(cube.at(above), &scene).expect("boxes");
     let (nearest, proof) = query.certified_nearest().expect("an answer").expect("one");
     assert_eq!(nearest.obstacle, ObstacleId(3));
     assert!(nearest.distance.upper() - nearest.lower < 1e-7, "{nearest:?}");
@@ -237,10 +238,10 @@ fn minimum_gap_is_kept_from_all_obstacles() {
     let mut obstacles = Obstacles::default();
     obstacles.insert(cube.clone(), at(3.0, 1.2, 0.0));
     obstacles.insert(cube.clone(), at(9.0, 0.0, 0.0));
-    let among = Among::new(cube.at(Pose::IDENTITY), &obstacles).expect("a question");
-    let plain = among.clearance(DVec3::X).expect("an answer").distance().expect("apart");
+    let among = SceneQuery::new(cube.at(Pose::IDENTITY), &obstacles).expect("a question");
+    let plain = among.clearance(DVec3::X).expect("an answer").safe_translation().expect("apart");
     assert!((plain - 8.0).abs() < 1e-12);
-    let kept = among.with_options(Options::default().with_keep(0.5)).expect("a gap");
-    let kept = kept.clearance(DVec3::X).expect("an answer").distance().expect("apart");
+    let kept = among.with_options(Options::default().with_min_gap(0.5)).expect("a gap");
+    let kept = kept.clearance(DVec3::X).expect("an answer").safe_translation().expect("apart");
     assert!((kept - (2.0 - 0.21_f64.sqrt())).abs() < 1e-12, "{kept}");
 }

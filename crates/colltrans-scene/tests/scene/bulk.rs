@@ -25,7 +25,7 @@ fn answers_match_ordinary_casts_and_exact_judge() {
         let bodies = setting.bodies().expect("bodies");
         let [p, q] = [bodies.moving.at(setting.moving_pose), bodies.fixed.at(setting.fixed_pose)];
         let rotations = FixedRotations::new(p, q);
-        let approach = rotations.along(setting.direction).expect("a direction");
+        let approach = rotations.for_direction(setting.direction).expect("a direction");
         let mut random = Random::new(seed);
         for which in 0..still::CASTS {
             let Ok(cast) = still::cast(&setting, &bodies, which, &mut random) else { continue };
@@ -73,7 +73,7 @@ fn casts_in_general_position_visit_few_faces() {
         let world = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
         let placements = poses_along_direction(2_000, &mut random);
         let rotations = FixedRotations::new(p.at(placements[0].0), q.at(world));
-        let approach = rotations.along(placements[0].1).expect("a direction");
+        let approach = rotations.for_direction(placements[0].1).expect("a direction");
         let (mut left, mut visited) = ([0; 2], [0; 2]);
         for (pose, along) in &placements {
             let cast = Cast::new(p.at(*pose), q.at(world), *along).expect("a query");
@@ -98,7 +98,7 @@ fn casts_in_general_position_visit_few_faces() {
 fn axis_aligned_boxes_are_answered_by_faces_unless_grazing() {
     let cube = ConvexPolyhedron::cuboid(-DVec3::ONE, DVec3::ONE).expect("a cube");
     let rotations = FixedRotations::new(cube.at(Pose::IDENTITY), cube.at(Pose::IDENTITY));
-    let approach = rotations.along(DVec3::X).expect("a direction");
+    let approach = rotations.for_direction(DVec3::X).expect("a direction");
     let (mut by_faces, mut all) = ([0; 2], 0);
     for y in -12..=12 {
         for z in -12..=12 {
@@ -173,10 +173,10 @@ fn ranges_and_clearances_match_ordinary_casts() {
     let world = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
     let placements = poses_along_direction(300, &mut random);
     let rotations = FixedRotations::new(p.at(placements[0].0), q.at(world));
-    let approach = rotations.along(placements[0].1).expect("a direction");
+    let approach = rotations.for_direction(placements[0].1).expect("a direction");
     for (pose, along) in &placements {
         for back in [0.0, 4.0, 8.0] {
-            let pose = pose.translated(*along * back).expect("a pose");
+            let pose = pose.translated_by(*along * back).expect("a pose");
             let cast = Cast::new(p.at(pose), q.at(world), *along).expect("a query");
             // Both are infinite for bodies that pass each other.
             let near = |a: f64, b: f64| a == b || (a - b).abs() < 1e-11;
@@ -210,7 +210,7 @@ fn bits_are_independent_of_order_and_threads() {
     let world = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
     let placements = poses_along_direction(400, &mut random);
     let rotations = FixedRotations::new(p.at(placements[0].0), q.at(world));
-    let approach = rotations.along(placements[0].1).expect("a direction");
+    let approach = rotations.for_direction(placements[0].1).expect("a direction");
     let one = |(pose, along): &(Pose, DVec3)| {
         let cast = Cast::new(p.at(*pose), q.at(world), *along).expect("a query");
         [rotations.first_contact(&cast), approach.first_contact(&cast)].map(|o| o.expect("one"))
@@ -256,7 +256,7 @@ fn unsupported_casts_match_ordinary_casts_bitwise() {
     let others = [
         Cast::new(turned, q.at(Pose::IDENTITY), DVec3::X).expect("a query"),
         Cast::new(swapped[0], swapped[1], DVec3::X).expect("a query"),
-        cast.keeping(0.25).expect("a gap"),
+        cast.with_min_gap(0.25).expect("a gap"),
         cast.with_solver(Solver::Cta),
         cast.with_graze_tolerance(100.0).expect("a tolerance"),
     ];
@@ -267,15 +267,15 @@ fn unsupported_casts_match_ordinary_casts_bitwise() {
     let square =
         ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)).expect("a square");
     let large = hull(200, &mut random);
-    assert_eq!(FixedRotations::pays_after(&square, &square), None);
-    assert_eq!(FixedRotations::pays_after(&large, &large), None);
-    assert!(FixedRotations::pays_after(&p, &large).is_some_and(|casts| casts > 500));
+    assert_eq!(FixedRotations::break_even_casts(&square, &square), None);
+    assert_eq!(FixedRotations::break_even_casts(&large, &large), None);
+    assert!(FixedRotations::break_even_casts(&p, &large).is_some_and(|casts| casts > 500));
     for body in [square, large] {
         let rotations = FixedRotations::new(body.at(pose), body.at(Pose::IDENTITY));
         let cast = Cast::new(body.at(pose), body.at(Pose::IDENTITY), DVec3::X).expect("a query");
-        let approach = rotations.along(DVec3::X).expect("a direction");
+        let approach = rotations.for_direction(DVec3::X).expect("a direction");
         assert_eq!(rotations.first_contact(&cast), cast.first_contact());
         assert_eq!(approach.first_contact(&cast), cast.first_contact());
     }
-    assert!(rotations.along(DVec3::ZERO).is_err());
+    assert!(rotations.for_direction(DVec3::ZERO).is_err());
 }

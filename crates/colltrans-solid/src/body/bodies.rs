@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::Solid;
-use super::shells::{self, MAX_TRIED_TRIANGLES, crossing, lies_on};
+use super::shells::{self, MAX_TRIED_TRIANGLES, lies_on_triangle, ray_crossing};
 
 impl Solid {
     /// Returns the body of each of [`Self::triangles`]: a closed shell with its cavities, or an open shell.
@@ -65,7 +65,8 @@ impl Solid {
         let others = (0..shell_of.len()).filter(|&t| t != first && shell_of[t] as usize == cavity);
         let points = || std::iter::once(first).chain(others.clone()).flat_map(corners);
         let is_off = |p: &DVec3| {
-            let is_on = |t: usize| shell_of[t] as usize != cavity && lies_on(*p, corners(t));
+            let is_on =
+                |t: usize| shell_of[t] as usize != cavity && lies_on_triangle(*p, corners(t));
             !(0..shell_of.len()).any(is_on)
         };
         let [on_first, ..] = corners(first);
@@ -81,11 +82,11 @@ impl Solid {
                 continue;
             }
             if !node.is_leaf() {
-                open.extend([at + node.skip as usize, at + node.skip as usize + 1]);
+                open.extend([at + node.child_offset as usize, at + node.child_offset as usize + 1]);
                 continue;
             }
             for t in node.facets().filter(|&t| self.piece_of(t) == piece) {
-                *windings.entry(shell_of[t] as usize).or_default() += crossing(p, corners(t));
+                *windings.entry(shell_of[t] as usize).or_default() += ray_crossing(p, corners(t));
             }
         }
         let around = windings.into_iter().filter(|&(shell, winding)| {

@@ -56,7 +56,7 @@ impl SignMaxima {
 
     /// Returns the depths of points below the corners and edges of their box, as shares in steps.
     pub(super) fn depth_shares(&self, bounds: &Aabb) -> [u8; CUTS] {
-        let sums = extents_along_signs(bounds.size());
+        let sums = extents_along_signs(bounds.side_lengths());
         let mut ends = Self::NONE;
         for c in 0..8 {
             let lower = BVec3::new(c & 1 != 0, c & 2 != 0, c & 4 != 0);
@@ -82,18 +82,20 @@ fn extents_along_signs(e: DVec3) -> [f64; CUTS] {
 /// Depths of all corners and edges. The length 32 makes bounds checks of 5-bit indices unnecessary.
 pub(crate) type Depths = [f64; 32];
 
-/// Computes a depth from its share, the extent of one step, and the distance by which facets may have moved. A corner
-/// of the box moves by at most 3 times that distance along its signs, and the facets below it by at most `sqrt(3)`
-/// times.
+/// Computes the depth of a corner or edge after facets have moved by at most `moved`; at least 0. `cut` is the share,
+/// in steps, and `step` the length of one step.
+///
+/// The depth decreases by at most 5 times `moved`: a corner of the box moves by at most 3 times that distance along its
+/// signs, and the facets below it by at most `sqrt(3)` times.
 #[inline]
 fn reduced_depth(cut: f64, step: f64, moved: f64) -> f64 {
     let rest = step * cut - 5.0 * moved;
     if rest > 0.0 { rest } else { 0.0 }
 }
 
-/// Returns all depths of a box with these side lengths, of which the facets have moved by at most `moved`.
+/// Returns all depths of a box with the side lengths `size`, after its facets have moved by at most `moved`.
 #[inline]
-pub(crate) fn depths(cuts: &[u8; CUTS], size: DVec3, moved: f64) -> Depths {
+pub(crate) fn depth_table(cuts: &[u8; CUTS], size: DVec3, moved: f64) -> Depths {
     let extents = extents_along_signs(size * SHARE_STEPS.recip());
     let shares = cuts.map(f64::from);
     let mut depths = [0.0; 32];
@@ -105,14 +107,14 @@ pub(crate) fn depths(cuts: &[u8; CUTS], size: DVec3, moved: f64) -> Depths {
 
 /// A normal as a sum of an axis, an edge and a corner, as defined in the head of the module.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Parts {
+pub(crate) struct NormalDecomposition {
     corner: u8,
     edge: u8,
     /// Weights of the corner and of the edge.
     weights: [f64; 2],
 }
 
-impl Parts {
+impl NormalDecomposition {
     #[inline]
     pub(crate) fn new(n: DVec3) -> Self {
         // Without branches, because they would be mispredicted.
@@ -131,7 +133,7 @@ impl Parts {
 
     /// Returns the amount by which the depths lower the support value of the box along the normal.
     #[inline]
-    pub(crate) fn gain(&self, depths: &Depths) -> f64 {
+    pub(crate) fn support_reduction(&self, depths: &Depths) -> f64 {
         let [w, v] = self.weights;
         w * depths[usize::from(self.corner & 31)] + v * depths[usize::from(self.edge & 31)]
     }
@@ -173,7 +175,7 @@ mod tests {
                 DVec3::new(3.0 * c, 2.0 * s - c, 0.5 * s + 1.5 * c)
             })
             .collect();
-        let bounds = Aabb::of_points(points.iter().copied());
+        let bounds = Aabb::from_points(points.iter().copied());
         let Aabb { low, high } = bounds;
         let mut reach = SignMaxima::NONE;
         for p in &points {
@@ -181,13 +183,13 @@ mod tests {
         }
         let cuts = reach.depth_shares(&bounds);
         assert!(cuts.iter().any(|&c| c > 64));
-        let depths = depths(&cuts, high - low, 0.0);
+        let depths = depth_table(&cuts, high - low, 0.0);
         let mut gained = 0.0;
         for k in 0..400 {
             let (a, b) = (0.37 * f64::from(k), 0.11 * f64::from(k));
             let n = DVec3::new(a.cos() * b.sin(), a.sin() * b.sin(), b.cos());
             for n in [n, -n] {
-                let gain = Parts::new(n).gain(&depths);
+                let gain = NormalDecomposition::new(n).support_reduction(&depths);
                 let end = n.dot(DVec3::select(n.cmpgt(DVec3::ZERO), high, low));
                 let farthest = points.iter().map(|p| n.dot(*p)).fold(f64::NEG_INFINITY, f64::max);
                 assert!(farthest <= end - gain + 1e-12, "{n}: {farthest} {end} {gain}");

@@ -9,10 +9,10 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::exact;
-use super::wedge::{Axis, Ray, Wedge};
+use super::wedge::{AxisSigns, Ray, Wedge};
 
 /// Marks a side of a triangle without a neighbour.
-pub(crate) const NONE: u32 = u32::MAX;
+pub(crate) const NO_NEIGHBOUR: u32 = u32::MAX;
 
 /// The pairs of half-edges of a mesh, and the half-edges without a partner.
 pub(super) struct Edges {
@@ -39,7 +39,7 @@ fn opposite_vertex(triangles: &[[u32; 3]], half_edge: u32) -> u32 {
 impl Edges {
     pub(super) fn new(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Self {
         let mut edges = Self {
-            neighbours: vec![[NONE; 3]; triangles.len()],
+            neighbours: vec![[NO_NEIGHBOUR; 3]; triangles.len()],
             open: Vec::new(),
             inconsistent: Vec::new(),
             crowded: 0,
@@ -134,8 +134,8 @@ impl Fan {
     fn nearest_clockwise(&self, f: usize, forward: usize) -> usize {
         let mut best = forward;
         for b in forward + 1..self.apexes.len() {
-            let wedge = Wedge { start: Ray::to(best), end: Ray::to(f) };
-            if wedge.is_empty(self) || wedge.contains(Ray::to(b), self) {
+            let wedge = Wedge { start: Ray::towards(best), end: Ray::towards(f) };
+            if wedge.is_empty(self) || wedge.contains(Ray::towards(b), self) {
                 best = b;
             }
         }
@@ -143,13 +143,13 @@ impl Fan {
     }
 }
 
-impl Axis for Fan {
-    fn det(&self, x: usize, y: usize) -> Ordering {
-        exact::side(self.p, self.q, self.apexes[x], self.apexes[y])
+impl AxisSigns for Fan {
+    fn determinant_sign(&self, x: usize, y: usize) -> Ordering {
+        exact::sign_of_side(self.p, self.q, self.apexes[x], self.apexes[y])
     }
 
     fn same_half(&self, x: usize, y: usize) -> bool {
-        let turn = |k: usize, axis| exact::turn(self.p, self.q, self.apexes[k], axis);
+        let turn = |k: usize, axis| exact::sign_along_axis(self.p, self.q, self.apexes[k], axis);
         let axis = (0..3).find(|&axis| turn(x, axis) != Ordering::Equal).unwrap_or(0);
         turn(x, axis) == turn(y, axis)
     }

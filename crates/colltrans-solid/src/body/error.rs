@@ -108,6 +108,6 @@ pub enum SolidError {
 
 impl From<SolidError> for QueryError {
     fn from(error: SolidError) -> Self {
-        Self::NoSolid { reason: error.to_string() }
+        Self::NotASolid { reason: error.to_string() }
     }
 }

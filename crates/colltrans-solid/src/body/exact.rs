@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
-pub(crate) use colltrans_kernel::predicates::sign;
+pub(crate) use colltrans_kernel::predicates::sign_of;
 use colltrans_kernel::predicates::{orient2d, orient3d};
 
 /// Projects a point along an axis, preserving counter-clockwise order.
@@ -17,19 +17,19 @@ pub(super) fn drop_axis(p: DVec3, axis: usize) -> DVec2 {
 }
 
 /// Returns the sign of `det[b - a, c - a, e]`, where `e` is the unit vector of an axis.
-pub(crate) fn turn(a: DVec3, b: DVec3, c: DVec3, axis: usize) -> Ordering {
+pub(crate) fn sign_along_axis(a: DVec3, b: DVec3, c: DVec3, axis: usize) -> Ordering {
     let [a, b, c] = [a, b, c].map(|p| drop_axis(p, axis));
-    sign(orient2d(a, b, c))
+    sign_of(orient2d(a, b, c))
 }
 
 /// Returns the sign of `det[b - a, c - a, e - a]`.
-pub(crate) fn side(a: DVec3, b: DVec3, c: DVec3, e: DVec3) -> Ordering {
-    sign(orient3d(a, b, c, e))
+pub(crate) fn sign_of_side(a: DVec3, b: DVec3, c: DVec3, e: DVec3) -> Ordering {
+    sign_of(orient3d(a, b, c, e))
 }
 
 /// Checks whether three points lie on one line.
 pub(super) fn are_collinear(a: DVec3, b: DVec3, c: DVec3) -> bool {
-    (0..3).all(|axis| turn(a, b, c, axis) == Ordering::Equal)
+    (0..3).all(|axis| sign_along_axis(a, b, c, axis) == Ordering::Equal)
 }
 
 /// Checks whether `m`, a point on the line through `p` and `q`, lies strictly between them.

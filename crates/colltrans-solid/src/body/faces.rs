@@ -13,7 +13,7 @@
 use glam::DVec3;
 
 use super::Solid;
-use super::edges::NONE;
+use super::edges::NO_NEIGHBOUR;
 use super::tree;
 use colltrans_convex::body::{FaceId, Feature};
 
@@ -40,15 +40,15 @@ impl Faces {
             if solid.vertices.iter().all(single) { SINGLE_PRECISION } else { DOUBLE_PRECISION };
         let precision = share * solid.reach;
         let areas: Vec<DVec3> = (0..solid.triangles.len() as u32)
-            .map(|t| tree::normal(solid.triangle_corners(t)).0)
+            .map(|t| tree::area_vector(solid.triangle_corners(t)).0)
             .collect();
         let mut order: Vec<u32> = (0..areas.len() as u32).collect();
         let size = |t: &u32| areas[*t as usize].length_squared();
         order.sort_by(|a, b| size(b).total_cmp(&size(a)));
-        let mut face_of = vec![NONE; areas.len()];
+        let mut face_of = vec![NO_NEIGHBOUR; areas.len()];
         let mut members: Vec<u32> = Vec::new();
         for seed in order {
-            if face_of[seed as usize] != NONE {
+            if face_of[seed as usize] != NO_NEIGHBOUR {
                 continue;
             }
             let mut plane = FacePlane::default();
@@ -63,7 +63,7 @@ impl Faces {
             while let Some(&t) = members.get(next) {
                 next += 1;
                 for n in solid.neighbours[t as usize] {
-                    if n == NONE || face_of[n as usize] != NONE {
+                    if n == NO_NEIGHBOUR || face_of[n as usize] != NO_NEIGHBOUR {
                         continue;
                     }
                     let same = solid.facet_index[n as usize] == solid.facet_index[t as usize];
@@ -78,7 +78,7 @@ impl Faces {
                     }
                 }
             }
-            let number = members.iter().map(|&t| face_of[t as usize]).min().unwrap_or(NONE);
+            let number = members.iter().map(|&t| face_of[t as usize]).min().unwrap_or(NO_NEIGHBOUR);
             members.drain(..).for_each(|t| face_of[t as usize] = number);
         }
         let corners = corner_vertices(solid, &face_of);
@@ -102,7 +102,7 @@ fn corner_vertices(solid: &Solid, face_of: &[u32]) -> Vec<bool> {
     let mut count = |v: u32| ends[v as usize] = ends[v as usize].saturating_add(1);
     for (t, neighbours) in solid.neighbours.iter().enumerate() {
         for (k, &n) in neighbours.iter().enumerate() {
-            let on_boundary = n == NONE;
+            let on_boundary = n == NO_NEIGHBOUR;
             if on_boundary || face_of[n as usize] != face_of[t] {
                 // The neighbour counts the other end.
                 count(solid.triangles[t][k]);
@@ -175,7 +175,7 @@ impl Solid {
     }
 
     /// Returns the maximum difference of coordinates that were meant to be equal, a length.
-    pub(crate) fn precision(&self) -> f64 {
+    pub(crate) fn coordinate_precision(&self) -> f64 {
         self.faces().precision
     }
 
@@ -231,7 +231,7 @@ impl Solid {
         match (0..3).find(is_on) {
             None => self.face_feature(triangle),
             Some(k) => match self.neighbours[triangle as usize][k] {
-                n if n != NONE && lies(n) => self.face_feature(n),
+                n if n != NO_NEIGHBOUR && lies(n) => self.face_feature(n),
                 _ => self.side_feature(triangle, k),
             },
         }
@@ -270,7 +270,7 @@ impl Solid {
     pub(crate) fn is_sharp(&self, triangle: u32, k: usize) -> bool {
         let n = self.neighbours[triangle as usize][k];
         let face_of = &self.faces().face_of;
-        n == NONE || face_of[n as usize] != face_of[triangle as usize]
+        n == NO_NEIGHBOUR || face_of[n as usize] != face_of[triangle as usize]
     }
 
     /// Checks whether more than two sharp edges end at a vertex.
@@ -288,7 +288,8 @@ impl Solid {
             let first = if side == 0 { Some(triangle) } else { None };
             let mut at = first.or_else(|| Some(across(triangle, place(triangle)? + side)));
             for _ in 0..self.triangles.len() {
-                let Some((t, k)) = at.filter(|&t| t != NONE).and_then(|t| Some((t, place(t)?)))
+                let Some((t, k)) =
+                    at.filter(|&t| t != NO_NEIGHBOUR).and_then(|t| Some((t, place(t)?)))
                 else {
                     break;
                 };
@@ -325,7 +326,7 @@ impl Solid {
             let own = self.triangles[t as usize];
             let arriving = (k + 2) % 3;
             // An edge between two triangles is visited in the triangle in which it starts at the vertex.
-            let on_boundary = self.neighbours[t as usize][arriving] == NONE;
+            let on_boundary = self.neighbours[t as usize][arriving] == NO_NEIGHBOUR;
             self.is_sharp(t, k) && visit([own[(k + 1) % 3], t])
                 || on_boundary && visit([own[arriving], t])
         });

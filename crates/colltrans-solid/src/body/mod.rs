@@ -31,14 +31,15 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3Swizzles};
 
 use colltrans_convex::body::{
-    Aabb, ConvexPolyhedron, Hull, InputFacet, InputVertex, Kept, Moving, Numbered,
+    Aabb, ConvexPolyhedron, DerivedDataSlot, InputFacet, InputNumbered, InputVertex, Moving,
+    VertexHull,
 };
 use colltrans_kernel::motion::Motion;
 pub use error::SolidError;
 use faces::Faces;
 pub use report::{Shell, ShellKind, SolidReport};
-pub use shells::crossing;
-pub use shrink::{ShrinkReport, Shrinking, displace};
+pub use shells::ray_crossing;
+pub use shrink::{OffsetField, ShrinkReport, offset_vertex};
 use tree::Node;
 pub(crate) use validate::Surface;
 
@@ -85,20 +86,20 @@ pub struct Solid {
     neighbours: Vec<[u32; 3]>,
     kinds: Vec<ShellKind>,
     nodes: Vec<Node>,
-    spans: Vec<Span>,
+    spans: Vec<ShellBounds>,
     reach: f64,
     /// Number of vertices and of facets of the input.
     input_counts: [u32; 2],
     report: SolidReport,
-    shrinking: OnceLock<Shrinking>,
+    shrinking: OnceLock<OffsetField>,
     /// Computed when a feature is first requested.
     faces: OnceLock<Box<Faces>>,
     groups: Box<Groups>,
-    kept: Kept,
+    kept: DerivedDataSlot,
 }
 
-impl Numbered for Solid {
-    fn inputs(&self) -> &[InputVertex] {
+impl InputNumbered for Solid {
+    fn vertex_inputs(&self) -> &[InputVertex] {
         &self.vertex_index
     }
 
@@ -108,7 +109,7 @@ impl Numbered for Solid {
 }
 
 /// A body that can be used as a [`Solid`] in queries and as a piece of a solid.
-pub trait AsSolid: Numbered {
+pub trait AsSolid: InputNumbered {
     /// Returns the body as a solid. The surface of a convex polyhedron is built on first use and stored with it. A
     /// flat polygon becomes a surface with two sides and no volume.
     ///
@@ -143,7 +144,7 @@ impl AsSolid for Solid {
 
 /// The bounding box of a shell.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Span {
+pub(crate) struct ShellBounds {
     pub(crate) bounds: Aabb,
     /// Position of one triangle of the shell.
     pub(crate) triangle: u32,
@@ -208,8 +209,8 @@ impl Solid {
     /// ([`Self::input_counts`]).
     ///
     /// # Errors
-    /// Returns an error if there are no pieces, more facets than 32-bit indices support, or a point or segment among
-    /// the pieces.
+    /// Returns an error if there are no pieces, if the result has more than `2^29 - 1` triangles, input vertices or
+    /// input facets, or if [`AsSolid::as_solid`] rejects a piece, for example a point or a segment.
     pub fn from_pieces<'a, B: AsSolid + 'a>(
         pieces: impl IntoIterator<Item = &'a B>,
     ) -> Result<Self, SolidError> {
@@ -238,7 +239,7 @@ impl Solid {
                 .extend(piece.vertex_index.iter().map(|v| InputVertex(v.0 + vertex_base)));
             all.triangles.extend(piece.triangles.iter().map(|c| c.map(|k| k + v)));
             all.facet_index.extend(piece.facet_index.iter().map(|f| InputFacet(f.0 + facet_base)));
-            let shift = |n: u32| if n == edges::NONE { n } else { n + t };
+            let shift = |n: u32| if n == edges::NO_NEIGHBOUR { n } else { n + t };
             all.neighbours.extend(piece.neighbours.iter().map(|n| n.map(shift)));
             all.kinds.extend_from_slice(&piece.kinds);
             report.add_counts(&piece.report);
@@ -266,7 +267,7 @@ impl Solid {
             vertex_index: body.input_indices().to_vec(),
             triangles: vec![corners],
             facet_index: vec![InputFacet(0)],
-            neighbours: vec![[edges::NONE; 3]],
+            neighbours: vec![[edges::NO_NEIGHBOUR; 3]],
             input_counts: [
                 body.input_indices().iter().max().map_or(0, |last| last.0.saturating_add(1)),
                 1,
@@ -278,7 +279,7 @@ impl Solid {
             triangles: 1,
             volume: 0.0,
             holes_through: None,
-            turned: false,
+            reversed: false,
             kind: ShellKind::Sheet,
         };
         Self::from_surface(surface, SolidReport { shells: vec![shell], ..SolidReport::default() })
@@ -315,7 +316,7 @@ impl Solid {
         for (k, &t) in order.iter().enumerate() {
             place[t as usize] = k as u32;
         }
-        let shift = |n: u32| if n == edges::NONE { n } else { place[n as usize] };
+        let shift = |n: u32| if n == edges::NO_NEIGHBOUR { n } else { place[n as usize] };
         let old = |k: &u32| *k as usize;
         let kinds: Vec<ShellKind> = order.iter().map(|k| surface.kinds[old(k)]).collect();
         tree::mark_open_nodes(&mut nodes, |t| kinds[t] != ShellKind::Closed);
@@ -337,22 +338,22 @@ impl Solid {
             shrinking: OnceLock::new(),
             faces,
             groups: Box::default(),
-            kept: Kept::default(),
+            kept: DerivedDataSlot::default(),
         };
         solid.spans = solid.shell_spans();
         solid
     }
 
     /// Computes the bounding boxes of the shells.
-    fn shell_spans(&self) -> Vec<Span> {
+    fn shell_spans(&self) -> Vec<ShellBounds> {
         let shell_of = shells::shell_numbers(&self.neighbours);
-        let mut spans: Vec<Span> = Vec::new();
+        let mut spans: Vec<ShellBounds> = Vec::new();
         for (t, &shell) in shell_of.iter().enumerate() {
             if shell as usize == spans.len() {
-                spans.push(Span { bounds: Aabb::EMPTY, triangle: t as u32 });
+                spans.push(ShellBounds { bounds: Aabb::EMPTY, triangle: t as u32 });
             }
             for v in self.triangles[t] {
-                spans[shell as usize].bounds.add(self.vertices[v as usize]);
+                spans[shell as usize].bounds.extend_to(self.vertices[v as usize]);
             }
         }
         spans
@@ -364,7 +365,7 @@ impl Solid {
     #[doc(hidden)]
     #[inline]
     pub fn has_same_tree(&self, other: &Self) -> bool {
-        let place = |node: &Node| (node.skip, node.first, node.count);
+        let place = |node: &Node| (node.child_offset, node.first_facet, node.facet_count);
         self.vertices == other.vertices
             && self.triangles == other.triangles
             && self.kinds == other.kinds
@@ -416,18 +417,18 @@ impl Solid {
 
     /// Checks whether a closed body vanishes under an inward offset by this amount, because the amount is at least
     /// half of the smallest side of its box.
-    pub(crate) fn vanishes(&self, amount: f64) -> bool {
-        amount > 0.0 && 2.0 * amount >= self.thickness() && self.is_closed()
+    pub(crate) fn vanishes_under_offset(&self, amount: f64) -> bool {
+        amount > 0.0 && 2.0 * amount >= self.min_side() && self.is_closed()
     }
 
     /// Returns the smallest side of the bounding box.
-    pub(crate) fn thickness(&self) -> f64 {
-        self.bounds().size().min_element()
+    pub(crate) fn min_side(&self) -> f64 {
+        self.bounds().side_lengths().min_element()
     }
 
     /// Checks whether the solid has an interior, that is, a closed shell.
     pub(crate) fn has_interior(&self) -> bool {
-        self.report.count(ShellKind::Closed) > 0
+        self.report.shell_count(ShellKind::Closed) > 0
     }
 
     /// Checks whether any shell has an offset, that is, is not a sheet.
@@ -442,7 +443,8 @@ impl Solid {
         &self.report
     }
 
-    /// Returns the sum of the volumes of all shells, in cubic units. Overlaps of pieces count twice.
+    /// Returns the sum of the volumes of all shells, in cubic units. Overlaps of pieces count twice. If a shell is
+    /// open, the sum has no meaning.
     pub fn volume(&self) -> f64 {
         self.report.shells.iter().map(|s| s.volume).sum()
     }
@@ -475,20 +477,20 @@ impl Solid {
     }
 
     /// Returns the offset field, or `None` if this amount changes nothing.
-    fn shrinking_by(&self, amount: f64) -> Option<&Shrinking> {
-        (amount != 0.0 && self.has_offset()).then(|| self.shrinking())
+    fn shrinking_by(&self, amount: f64) -> Option<&OffsetField> {
+        (amount != 0.0 && self.has_offset()).then(|| self.offset_field())
     }
 
     /// Returns a box around the body offset inwards by this amount.
     pub(crate) fn offset_bounds(&self, amount: f64) -> Aabb {
         let bounds = self.bounds();
         let shrinking = self.shrinking_by(amount);
-        shrinking.map_or(bounds, |shrinking| shrinking.boxed(bounds, amount, 0))
+        shrinking.map_or(bounds, |shrinking| shrinking.offset_box(bounds, amount, 0))
     }
 
     /// Returns an upper bound on the displacement of a vertex under an offset by this amount.
     pub(crate) fn max_offset_displacement(&self, amount: f64) -> f64 {
-        self.shrinking_by(amount).map_or(0.0, |shrinking| shrinking.farthest * amount.abs())
+        self.shrinking_by(amount).map_or(0.0, |shrinking| shrinking.max_displacement * amount.abs())
     }
 
     /// Returns the memory that the solid occupies now, in bytes. Lazily computed data (offset facets, polygons)
@@ -505,9 +507,9 @@ impl Solid {
             + self.neighbours.capacity() * size_of::<[u32; 3]>()
             + self.kinds.capacity()
             + self.nodes.capacity() * size_of::<Node>()
-            + self.spans.capacity() * size_of::<Span>()
+            + self.spans.capacity() * size_of::<ShellBounds>()
             + self.report.shells.capacity() * size_of::<Shell>()
-            + self.shrinking.get().map_or(0, Shrinking::heap_bytes)
+            + self.shrinking.get().map_or(0, OffsetField::heap_bytes)
             + self.faces.get().map_or(0, |faces| size_of::<Faces>() + faces.heap_bytes())
             + size_of::<Groups>()
             + self.groups.heap_bytes()
@@ -515,7 +517,7 @@ impl Solid {
     }
 
     /// Returns the slot for data that queries derive from the body.
-    pub(crate) fn kept(&self) -> &Kept {
+    pub(crate) fn derived_data(&self) -> &DerivedDataSlot {
         &self.kept
     }
 
@@ -534,7 +536,7 @@ impl Solid {
         &self.neighbours
     }
 
-    pub(crate) fn spans(&self) -> &[Span] {
+    pub(crate) fn shell_bounds(&self) -> &[ShellBounds] {
         &self.spans
     }
 
@@ -552,14 +554,14 @@ impl Solid {
 
 impl Solid {
     /// Returns the body with a motion, for a cast of rotating bodies.
-    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a, Self> {
+    pub fn with_motion<'a>(&'a self, motion: &'a Motion) -> Moving<'a, Self> {
         Moving { body: self, motion: Cow::Borrowed(motion) }
     }
 }
 
 #[doc(hidden)]
-impl Hull for Solid {
-    fn corners(&self) -> &[DVec3] {
+impl VertexHull for Solid {
+    fn hull_vertices(&self) -> &[DVec3] {
         self.vertices()
     }
 

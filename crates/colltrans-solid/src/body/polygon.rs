@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3, Vec3Swizzles};
 
 use colltrans_kernel::predicates::orient2d as turn;
 
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 /// Minimum number of corners for a grid.
 const MIN_GRID_CORNERS: usize = 64;
@@ -86,7 +86,7 @@ impl Ring {
         let inside =
             |p: DVec2| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
         let leaves_free = |m: usize| {
-            work::count(1);
+            visit_counter::count_visits(1);
             let p = self.flat[m];
             // A corner that occurs twice (at a slit to a hole) touches the ear only in a corner of the ear.
             p == a || p == b || p == c || !inside(p)

@@ -5,8 +5,9 @@
 pub enum ShellKind {
     /// Every edge has a facet on both sides. The shell has an interior.
     Closed,
-    /// Open, but just inside 99 % of its area the generalised winding number is above 0.9. The shell blocks from both
-    /// sides and with its boundary edges. It has an offset.
+    /// Open, but almost closed: the generalised winding number, sampled on the facets, is between 0.9 and 1.1 just
+    /// inside at 99 % of the samples or more. The shell blocks from both sides and with its boundary edges. It has an
+    /// offset.
     Sided,
     /// Any other open shell. It blocks from both sides and with its boundary edges. It has no offset, because it has
     /// no inner side.
@@ -39,7 +40,7 @@ pub struct Shell {
     /// another one, and for an odd Euler characteristic, which occurs if the shell touches itself in vertices.
     pub holes_through: Option<u32>,
     /// Whether the shell was inside out and has been reversed.
-    pub turned: bool,
+    pub reversed: bool,
     /// The kind of the shell.
     pub kind: ShellKind,
 }
@@ -56,7 +57,7 @@ pub struct SolidReport {
     /// Number of edges that are subdivided because vertices of the opposite side lie exactly on them.
     pub slits_closed: usize,
     /// Number of edges with more than two facets, as many in each direction.
-    pub crowded_edges: usize,
+    pub non_manifold_edges: usize,
     /// Number of edges with a facet on one side only; 0 for a closed solid.
     pub open_edges: usize,
 }
@@ -64,17 +65,17 @@ pub struct SolidReport {
 impl SolidReport {
     /// Returns the number of shells that have been reversed.
     pub fn turned(&self) -> usize {
-        self.shells.iter().filter(|s| s.turned).count()
+        self.shells.iter().filter(|s| s.reversed).count()
     }
 
     /// Returns the number of shells of a kind.
-    pub fn count(&self, kind: ShellKind) -> usize {
+    pub fn shell_count(&self, kind: ShellKind) -> usize {
         self.shells.iter().filter(|s| s.kind == kind).count()
     }
 
     /// Describes the open shells of the body in words; `None` if all shells are closed.
-    pub fn surface(&self) -> Option<String> {
-        let [closed, sided, sheets] = ShellKind::ALL.map(|kind| self.count(kind));
+    pub fn open_shell_summary(&self) -> Option<String> {
+        let [closed, sided, sheets] = ShellKind::ALL.map(|kind| self.shell_count(kind));
         let of = |count: usize, one: &str, many: &str| match count {
             0 => None,
             1 => Some(format!("1 {one}")),
@@ -105,7 +106,7 @@ impl SolidReport {
         self.vertices_merged += other.vertices_merged;
         self.facets_without_area += other.facets_without_area;
         self.slits_closed += other.slits_closed;
-        self.crowded_edges += other.crowded_edges;
+        self.non_manifold_edges += other.non_manifold_edges;
         self.open_edges += other.open_edges;
     }
 }

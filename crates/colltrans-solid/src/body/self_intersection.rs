@@ -15,10 +15,10 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::exact::side;
+use super::exact::sign_of_side;
 use super::{Solid, shells};
 use colltrans_convex::body::Aabb;
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 mod pair_filter;
 
@@ -105,7 +105,7 @@ impl Shells<'_> {
         }
         let [old, new] = [before, after].map(|placed| self.shell_boxes(placed));
         let within = |boxes: &[Aabb], inner: u32, outer: u32| {
-            boxes[outer as usize].holds(&boxes[inner as usize])
+            boxes[outer as usize].contains_box(&boxes[inner as usize])
         };
         let mut found = BTreeSet::new();
         for &cavity in &cavities {
@@ -124,7 +124,7 @@ impl Shells<'_> {
     fn shell_boxes(&self, placed: &PlacedFacets) -> Vec<Aabb> {
         let mut boxes = vec![Aabb::EMPTY; self.volumes.len()];
         for (t, &shell) in self.shell_of.iter().enumerate() {
-            placed.facet_corners(t).into_iter().for_each(|p| boxes[shell as usize].add(p));
+            placed.facet_corners(t).into_iter().for_each(|p| boxes[shell as usize].extend_to(p));
         }
         boxes
     }
@@ -134,7 +134,7 @@ impl Shells<'_> {
         let of = |shell| (0..self.shell_of.len()).filter(move |&t| self.shell_of[t] == shell);
         let Some(first) = of(inner).next() else { return false };
         let [point, ..] = placed.facet_corners(first);
-        of(outer).map(|t| shells::crossing(point, placed.facet_corners(t))).sum::<i32>() != 0
+        of(outer).map(|t| shells::ray_crossing(point, placed.facet_corners(t))).sum::<i32>() != 0
     }
 }
 
@@ -149,19 +149,20 @@ impl PlacedFacets<'_> {
         self.solid.triangles[triangle].map(|v| self.vertices[v as usize])
     }
 
-    /// Visits all pairs of facets, except those whose nodes [`PairFilter`] separate.
+    /// Visits all pairs of facets, except those whose nodes [`PairFilter::excludes_pair`] excludes.
     fn visit_pairs(&self, visit: &mut impl FnMut([usize; 2])) {
         let pair_filter = PairFilter::new(self);
         let mut stack = vec![[0, 0]];
         while let Some([a, b]) = stack.pop() {
-            work::count(1);
+            visit_counter::count_visits(1);
             if pair_filter.excludes_pair(a, b) {
                 continue;
             }
             let [m, n] = [a, b].map(|k| &self.solid.nodes[k]);
-            let halves = |k: usize| [0, 1].map(|n| k + self.solid.nodes[k].skip as usize + n);
+            let halves =
+                |k: usize| [0, 1].map(|n| k + self.solid.nodes[k].child_offset as usize + n);
             if m.is_leaf() && n.is_leaf() {
-                work::count(m.facets().len() * n.facets().len());
+                visit_counter::count_visits(m.facets().len() * n.facets().len());
                 for s in m.facets() {
                     n.facets().filter(|&t| a != b || s < t).for_each(|t| visit([s, t]));
                 }
@@ -210,11 +211,13 @@ impl PlacedFacets<'_> {
             return false;
         }
         let (f, g) = (self.facet_corners(s), self.facet_corners(t));
-        if !Aabb::of_points(f).meets(&Aabb::of_points(g)) || are_certainly_separated(&f, &g) {
+        if !Aabb::from_points(f).intersects(&Aabb::from_points(g))
+            || are_certainly_separated(&f, &g)
+        {
             return false;
         }
         let sides = |f: [DVec3; 3], [a, b, c]: [DVec3; 3]| {
-            let sides = f.map(|p| side(a, b, c, p));
+            let sides = f.map(|p| sign_of_side(a, b, c, p));
             (sides[0] != sides[1] || sides[0] != sides[2]).then_some(sides)
         };
         // `None` if the facets lie in one plane, or one of them strictly on one side of the plane of the other.
@@ -224,7 +227,7 @@ impl PlacedFacets<'_> {
                 let (p, q) = (f[k], f[(k + 1) % 3]);
                 let ends = [sides[k], sides[(k + 1) % 3]];
                 ends[0] != ends[1]
-                    && holds(ends, [(a, b), (b, c), (c, a)].map(|(u, v)| side(p, q, u, v)))
+                    && holds(ends, [(a, b), (b, c), (c, a)].map(|(u, v)| sign_of_side(p, q, u, v)))
             })
         };
         pierces(f, of_f, g) || pierces(g, of_g, f)
@@ -299,7 +302,7 @@ mod tests {
 
     /// Asserts that visited pairs include all touching pairs, and returns the number of these.
     fn assert_all_pairs(solid: &Solid, by: f64) -> usize {
-        let field = &solid.shrinking().field;
+        let field = &solid.offset_field().displacements;
         let vertices: Vec<DVec3> =
             solid.vertices.iter().zip(field).map(|(v, x)| *v + *x * by).collect();
         let placed = PlacedFacets { solid, vertices: &vertices };

@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::edges::NONE;
+use super::edges::NO_NEIGHBOUR;
 use super::exact;
 use super::openness;
 use super::report::{Shell, ShellKind, SolidReport};
@@ -35,7 +35,7 @@ pub(super) fn orient_shells(surface: &mut Surface, report: &mut SolidReport) {
             outermost.into_iter().filter(|&s| inverted(s)).collect()
         };
         for s in turn {
-            shells[s].turned = true;
+            shells[s].reversed = true;
             shells[s].volume = -shells[s].volume;
         }
         reverse_turned_shells(surface, &shell_of, &shells);
@@ -50,18 +50,18 @@ fn is_closed(shell: &Shell) -> bool {
 
 /// Returns the shell of each triangle. Shells are numbered in the order of their first triangles.
 pub(super) fn shell_numbers(neighbours: &[[u32; 3]]) -> Vec<u32> {
-    let mut shell_of = vec![NONE; neighbours.len()];
+    let mut shell_of = vec![NO_NEIGHBOUR; neighbours.len()];
     let mut stack = Vec::new();
     let mut count = 0;
     for seed in 0..neighbours.len() {
-        if shell_of[seed] != NONE {
+        if shell_of[seed] != NO_NEIGHBOUR {
             continue;
         }
         shell_of[seed] = count;
         stack.push(seed as u32);
         while let Some(t) = stack.pop() {
             for &n in &neighbours[t as usize] {
-                if n != NONE && shell_of[n as usize] == NONE {
+                if n != NO_NEIGHBOUR && shell_of[n as usize] == NO_NEIGHBOUR {
                     shell_of[n as usize] = count;
                     stack.push(n);
                 }
@@ -78,14 +78,14 @@ fn describe_shells(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<She
         triangles: 0,
         volume: 0.0,
         holes_through: None,
-        turned: false,
+        reversed: false,
         kind: ShellKind::Closed,
     };
     let mut shells = vec![empty; count];
     let mut origins = vec![None; count];
     // A vertex that several shells share is counted for each of them.
     let mut vertices = vec![0_i64; count];
-    let mut seen = vec![NONE; surface.vertices.len()];
+    let mut seen = vec![NO_NEIGHBOUR; surface.vertices.len()];
     let mut shared = vec![false; count];
     for (t, corners) in surface.triangles.iter().enumerate() {
         let s = shell_of[t] as usize;
@@ -93,14 +93,14 @@ fn describe_shells(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<She
         let origin = *origins[s].get_or_insert(a);
         shells[s].volume += (a - origin).dot((b - origin).cross(c - origin)) / 6.0;
         shells[s].triangles += 1;
-        if surface.neighbours[t].contains(&NONE) {
+        if surface.neighbours[t].contains(&NO_NEIGHBOUR) {
             shells[s].kind = ShellKind::Sheet;
         }
         for &v in corners {
             let last = std::mem::replace(&mut seen[v as usize], s as u32);
             if last != s as u32 {
                 vertices[s] += 1;
-                if last != NONE {
+                if last != NO_NEIGHBOUR {
                     shared[s] = true;
                     shared[last as usize] = true;
                 }
@@ -140,7 +140,7 @@ pub(super) fn shell_volumes(
 /// order.
 fn reverse_turned_shells(surface: &mut Surface, shell_of: &[u32], shells: &[Shell]) {
     for (t, &s) in shell_of.iter().enumerate() {
-        if shells[s as usize].turned {
+        if shells[s as usize].reversed {
             surface.triangles[t].swap(1, 2);
             surface.neighbours[t].swap(0, 2);
         }
@@ -169,7 +169,7 @@ impl<'a> Nesting<'a> {
                 last[s].push(t);
             }
             for &v in corners {
-                boxes[s].add(surface.vertices[v as usize]);
+                boxes[s].extend_to(surface.vertices[v as usize]);
             }
         }
         Self { surface, shell_of, last, boxes }
@@ -191,14 +191,15 @@ impl<'a> Nesting<'a> {
         let corners =
             |t: usize| self.surface.triangles[t].map(|v| self.surface.vertices[v as usize]);
         let is_other = |t: &usize| self.shell_of[*t] as usize != shell;
-        let is_on =
-            (0..self.surface.triangles.len()).filter(is_other).any(|t| lies_on(p, corners(t)));
+        let is_on = (0..self.surface.triangles.len())
+            .filter(is_other)
+            .any(|t| lies_on_triangle(p, corners(t)));
         (!is_on).then(|| self.is_outside(shell, p))
     }
 
     /// Checks whether the ray from a point of a shell gives winding number 0 for all other shells.
     fn is_outside(&self, shell: usize, p: DVec3) -> bool {
-        let boxed = |s: usize| self.boxes[s].holds(&Aabb { low: p, high: p });
+        let boxed = |s: usize| self.boxes[s].contains_box(&Aabb { low: p, high: p });
         let candidates: Vec<bool> = (0..self.boxes.len()).map(|s| s != shell && boxed(s)).collect();
         if !candidates.contains(&true) {
             return true;
@@ -207,7 +208,7 @@ impl<'a> Nesting<'a> {
         for (t, corners) in self.surface.triangles.iter().enumerate() {
             let s = self.shell_of[t] as usize;
             if candidates[s] {
-                windings[s] += crossing(p, corners.map(|v| self.surface.vertices[v as usize]));
+                windings[s] += ray_crossing(p, corners.map(|v| self.surface.vertices[v as usize]));
             }
         }
         windings.iter().all(|&w| w == 0)
@@ -215,29 +216,34 @@ impl<'a> Nesting<'a> {
 }
 
 /// Checks whether a point lies on a triangle.
-pub(super) fn lies_on(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
+pub(super) fn lies_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    if p.cmplt(low).any() || p.cmpgt(high).any() || exact::side(a, b, c, p) != Ordering::Equal {
+    if p.cmplt(low).any()
+        || p.cmpgt(high).any()
+        || exact::sign_of_side(a, b, c, p) != Ordering::Equal
+    {
         return false;
     }
-    let facing = |axis: &usize| exact::turn(a, b, c, *axis) != Ordering::Equal;
+    let facing = |axis: &usize| exact::sign_along_axis(a, b, c, *axis) != Ordering::Equal;
     (0..3).find(facing).is_some_and(|axis| {
-        let outside = exact::turn(a, b, c, axis).reverse();
-        [[a, b], [b, c], [c, a]].into_iter().all(|[u, v]| exact::turn(u, v, p, axis) != outside)
+        let outside = exact::sign_along_axis(a, b, c, axis).reverse();
+        [[a, b], [b, c], [c, a]]
+            .into_iter()
+            .all(|[u, v]| exact::sign_along_axis(u, v, p, axis) != outside)
     })
 }
 
 /// Returns 1 if the ray from `p` along `z` leaves through the triangle, -1 if it enters, and 0 if it misses the
 /// triangle.
 #[inline]
-pub fn crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
-    let facing = exact::turn(a, b, c, 2);
+pub fn ray_crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
+    let facing = exact::sign_along_axis(a, b, c, 2);
     if facing == Ordering::Equal {
         return 0;
     }
     let edges = [[a, b], [b, c], [c, a]];
     let inside = edges.into_iter().all(|[u, v]| perturbed_turn(u, v, p) == facing);
-    if !inside || exact::side(a, b, c, p) != facing.reverse() {
+    if !inside || exact::sign_of_side(a, b, c, p) != facing.reverse() {
         return 0;
     }
     if facing == Ordering::Greater { 1 } else { -1 }
@@ -246,7 +252,7 @@ pub fn crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
 /// Returns the side of the line from `u` to `v` on which the point `p + (e, e^2)` lies, seen along `z`, for an
 /// infinitesimal `e > 0`.
 fn perturbed_turn(u: DVec3, v: DVec3, p: DVec3) -> Ordering {
-    let sign = |x: f64| exact::sign(x);
+    let sign = |x: f64| exact::sign_of(x);
     // det[v - u, p - u + (e, e^2)] = det[v - u, p - u] + e^2 (v - u).x - e (v - u).y.
-    exact::turn(u, v, p, 2).then(sign(u.y - v.y)).then(sign(v.x - u.x))
+    exact::sign_along_axis(u, v, p, 2).then(sign(u.y - v.y)).then(sign(v.x - u.x))
 }

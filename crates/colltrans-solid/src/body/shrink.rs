@@ -15,13 +15,13 @@ use std::thread;
 
 use glam::DVec3;
 
-use super::edges::NONE;
+use super::edges::NO_NEIGHBOUR;
 use super::error::SolidError;
 use super::tree::{self, Node};
 use super::{ShellKind, Solid, Surface};
 use super::{self_intersection, shells};
 use colltrans_convex::body::{Aabb, InputFacet, InputVertex};
-use colltrans_kernel::range::{is_in_exact_range, without_traces};
+use colltrans_kernel::range::{is_in_exact_range, with_tiny_components_zeroed};
 
 /// Height below which the normal of a facet is noise, in multiples of the reach of the body.
 const MIN_HEIGHT: f64 = 1e-6;
@@ -34,15 +34,15 @@ const MAX_ROUNDS: usize = 64;
 
 /// Displacements of the vertices of a solid under an offset.
 #[derive(Debug, Clone)]
-pub struct Shrinking {
+pub struct OffsetField {
     /// Displacement of each vertex for an amount of 1.
-    pub field: Vec<DVec3>,
+    pub displacements: Vec<DVec3>,
     /// Bounds on the changes of each node of the tree.
-    pub nodes: Vec<NodeMotion>,
+    pub node_motions: Vec<NodeMotion>,
     /// Maximum amount for which the rates of the nodes hold.
-    pub(crate) most: f64,
+    pub(crate) max_rate_amount: f64,
     /// Length of the longest displacement.
-    pub(crate) farthest: f64,
+    pub(crate) max_displacement: f64,
     /// Vertices that stay because no displacement satisfies all their facets.
     pub(crate) stuck: Vec<u32>,
 }
@@ -57,9 +57,9 @@ pub struct NodeMotion {
     /// Rates at which the sides of the slab move.
     pub(crate) slab: [f32; 2],
     /// Rate of the sine of the angle by which a normal turns.
-    pub turn: f32,
+    pub normal_turn_rate: f32,
     /// Part of this sine that is due to rounding, for any amount.
-    pub rough: f32,
+    pub rounding_turn: f32,
 }
 
 /// Vertices and facets for which an offset is not exact.
@@ -68,9 +68,9 @@ pub struct ShrinkReport {
     /// Largest displacement of a vertex, in the units of the body.
     pub farthest: f64,
     /// Vertices that stay because no displacement is inwards for all facets around them; indices of the input.
-    pub stuck: Vec<InputVertex>,
-    /// Facets that turned inside out or passed through others, because the body is thinner there than twice the
-    /// amount, or a gap that grows shut is. Indices of the input, in increasing order.
+    pub fixed_vertices: Vec<InputVertex>,
+    /// Facets that turned inside out or passed through others, because the body is thinner there than twice the amount,
+    /// or because an outward offset closes a gap. Indices of the input, in increasing order.
     pub inverted: Vec<InputFacet>,
 }
 
@@ -121,8 +121,8 @@ impl Solid {
         let vertices: Vec<DVec3> = self
             .vertices
             .iter()
-            .zip(&self.shrinking().field)
-            .map(|(v, x)| displace(*v, *x, signed))
+            .zip(&self.offset_field().displacements)
+            .map(|(v, x)| offset_vertex(*v, *x, signed))
             .collect();
         if !vertices.iter().all(|v| is_in_exact_range(*v)) {
             return Err(SolidError::Amount { amount });
@@ -151,7 +151,7 @@ impl Solid {
     fn volumes_of(&self, vertices: &[DVec3]) -> Vec<f64> {
         let shell_of = shells::shell_numbers(&self.neighbours);
         let volumes = shells::shell_volumes(&shell_of, &self.triangles, |v| vertices[v as usize]);
-        let mut first = vec![InputFacet(NONE); volumes.len()];
+        let mut first = vec![InputFacet(NO_NEIGHBOUR); volumes.len()];
         for (&shell, &facet) in shell_of.iter().zip(&self.facet_index) {
             first[shell as usize] = facet.min(first[shell as usize]);
         }
@@ -162,19 +162,19 @@ impl Solid {
 
     /// Returns the vertices and facets for which an inward offset by `amount` (outward if negative) is not exact.
     pub fn shrink_report(&self, amount: f64) -> ShrinkReport {
-        let shrinking = self.shrinking();
+        let shrinking = self.offset_field();
         // A ball or cube that is thinner than twice the amount is mirrored in a point. Its facets keep their
         // orientations, and only the sign of the volume changes.
         let shell_of = shells::shell_numbers(&self.neighbours);
-        let fields = self.vertices.iter().zip(&shrinking.field);
-        let moved: Vec<DVec3> = fields.map(|(v, x)| displace(*v, *x, amount)).collect();
+        let fields = self.vertices.iter().zip(&shrinking.displacements);
+        let moved: Vec<DVec3> = fields.map(|(v, x)| offset_vertex(*v, *x, amount)).collect();
         let before =
             shells::shell_volumes(&shell_of, &self.triangles, |v| self.vertices[v as usize]);
         let after = shells::shell_volumes(&shell_of, &self.triangles, |v| moved[v as usize]);
         let inverted = |t: &usize| {
             let corners = self.triangles[*t].map(|v| v as usize);
-            let before = tree::normal(corners.map(|v| self.vertices[v])).0;
-            tree::normal(corners.map(|v| moved[v])).0.dot(before) <= 0.0
+            let before = tree::area_vector(corners.map(|v| self.vertices[v])).0;
+            tree::area_vector(corners.map(|v| moved[v])).0.dot(before) <= 0.0
         };
         let mirrored = |t: &usize| {
             let shell = shell_of[*t] as usize;
@@ -188,8 +188,12 @@ impl Solid {
         facets.sort_unstable();
         facets.dedup();
         ShrinkReport {
-            farthest: shrinking.farthest * amount.abs(),
-            stuck: shrinking.stuck.iter().map(|&v| self.vertex_index[v as usize]).collect(),
+            farthest: shrinking.max_displacement * amount.abs(),
+            fixed_vertices: shrinking
+                .stuck
+                .iter()
+                .map(|&v| self.vertex_index[v as usize])
+                .collect(),
             inverted: facets,
         }
     }
@@ -197,18 +201,18 @@ impl Solid {
     /// Returns the displacements, computed on first use.
     #[doc(hidden)]
     #[inline]
-    pub fn shrinking(&self) -> &Shrinking {
-        self.shrinking.get_or_init(|| Shrinking::new(self))
+    pub fn offset_field(&self) -> &OffsetField {
+        self.shrinking.get_or_init(|| OffsetField::new(self))
     }
 }
 
 /// Returns a vertex of the offset body. Coordinates too small for the exact range are replaced by 0.
 #[inline]
-pub fn displace(vertex: DVec3, field: DVec3, amount: f64) -> DVec3 {
-    without_traces(vertex + field * amount)
+pub fn offset_vertex(vertex: DVec3, field: DVec3, amount: f64) -> DVec3 {
+    with_tiny_components_zeroed(vertex + field * amount)
 }
 
-impl Shrinking {
+impl OffsetField {
     fn new(solid: &Solid) -> Self {
         let vertex_facets = VertexFacets::new(solid);
         let mut field = vec![DVec3::ZERO; solid.vertices.len()];
@@ -240,23 +244,29 @@ impl Shrinking {
         let most = MAX_RATE_AMOUNT * solid.reach;
         let nodes = (0..solid.nodes.len()).map(|k| node_motion(solid, &field, most, k)).collect();
         let farthest = field.iter().map(|x| x.length()).fold(0.0, f64::max);
-        Self { field, nodes, most, farthest, stuck }
+        Self {
+            displacements: field,
+            node_motions: nodes,
+            max_rate_amount: most,
+            max_displacement: farthest,
+            stuck,
+        }
     }
 
     /// Returns a box around the offset facets of a node, from the box of the node. The amount must not be negative.
-    pub(crate) fn boxed(&self, bounds: Aabb, amount: f64, node: usize) -> Aabb {
-        if amount <= self.most {
-            let motion = &self.nodes[node];
+    pub(crate) fn offset_box(&self, bounds: Aabb, amount: f64, node: usize) -> Aabb {
+        if amount <= self.max_rate_amount {
+            let motion = &self.node_motions[node];
             let rate = |r: [f32; 3]| DVec3::from_array(r.map(f64::from)) * amount;
             Aabb { low: bounds.low + rate(motion.low), high: bounds.high + rate(motion.high) }
         } else {
-            bounds.grown(self.farthest * amount.abs())
+            bounds.expanded(self.max_displacement * amount.abs())
         }
     }
 
     pub(crate) fn heap_bytes(&self) -> usize {
-        self.field.capacity() * size_of::<DVec3>()
-            + self.nodes.capacity() * size_of::<NodeMotion>()
+        self.displacements.capacity() * size_of::<DVec3>()
+            + self.node_motions.capacity() * size_of::<NodeMotion>()
             + self.stuck.capacity() * size_of::<u32>()
     }
 }
@@ -279,7 +289,7 @@ impl<'a> VertexFacets<'a> {
             starts[v + 1] += starts[v];
         }
         let mut next = starts.clone();
-        let mut facets = vec![NONE; next[solid.vertices.len()] as usize];
+        let mut facets = vec![NO_NEIGHBOUR; next[solid.vertices.len()] as usize];
         for t in (0..solid.triangles.len()).filter(moved) {
             for v in solid.triangles[t] {
                 facets[next[v as usize] as usize] = t as u32;
@@ -303,7 +313,7 @@ impl<'a> VertexFacets<'a> {
             for &t in facets {
                 let corners = self.solid.triangles[t as usize].map(|v| v as usize);
                 let [a, b, c] = corners.map(|v| self.solid.vertices[v]);
-                let area = tree::normal([a, b, c]).0;
+                let area = tree::area_vector([a, b, c]).0;
                 let longest = (b - a).length().max((c - b).length()).max((a - c).length());
                 let length = area.length();
                 if length > least * longest {
@@ -400,8 +410,8 @@ fn node_motion(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMoti
     let [mut turn, mut rough] = [0.0_f64; 2];
     for t in node.facets() {
         for v in solid.triangles[t].map(|v| v as usize) {
-            let moved = displace(solid.vertices[v], field[v], most);
-            bounds.add(moved);
+            let moved = offset_vertex(solid.vertices[v], field[v], most);
+            bounds.extend_to(moved);
             let level = node.axis.dot(moved);
             slab = [slab[0].min(level), slab[1].max(level)];
         }
@@ -423,8 +433,8 @@ fn node_motion(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMoti
             finite(down(slab[0], node.slab[0]).next_down()),
             finite(up(slab[1], node.slab[1]).next_up()),
         ],
-        turn: (turn * 1.000_001) as f32,
-        rough: (rough * 1.000_001) as f32,
+        normal_turn_rate: (turn * 1.000_001) as f32,
+        rounding_turn: (rough * 1.000_001) as f32,
     }
 }
 
@@ -434,7 +444,7 @@ fn normal_turn_rate(solid: &Solid, field: &[DVec3], t: usize) -> [f64; 2] {
     let [a, b, c] = corners.map(|v| solid.vertices[v]);
     let [x, y, z] = corners.map(|v| field[v]);
     let apart = (y - x).length().max((z - x).length());
-    let ratio = ((b - a).length() + (c - a).length()) / tree::normal([a, b, c]).0.length();
+    let ratio = ((b - a).length() + (c - a).length()) / tree::area_vector([a, b, c]).0.length();
     [2.0 * apart * ratio, 8.0 * f64::EPSILON * solid.reach * ratio]
 }
 

@@ -17,17 +17,17 @@ use glam::{BVec3, DVec3, Vec3Swizzles};
 
 use super::cuts::{CUTS, SignMaxima};
 use colltrans_convex::body::Aabb;
-use colltrans_kernel::descent::{node_to_split, replaced};
-use colltrans_kernel::split::{Boxed, Rule, split};
+use colltrans_kernel::descent::{node_to_split, pair_with_node};
+use colltrans_kernel::split::{Boxed, SplitRule, split_items};
 
 /// Maximum number of facets of a leaf.
-pub(crate) const LEAF: usize = 4;
+pub(crate) const MAX_LEAF_FACETS: usize = 4;
 /// Minimum number of facets of each of two subtrees that are built on two threads.
 const MIN_THREAD_FACETS: usize = 1 << 14;
 /// Sine that represents an unbounded angle.
-pub const ANY: f64 = 2.0;
+pub const ANY_ANGLE: f64 = 2.0;
 /// Sine that represents facets of open shells, which have no orientation.
-pub(crate) const OPEN: f32 = f32::INFINITY;
+pub(crate) const OPEN_SPREAD: f32 = f32::INFINITY;
 
 /// Bounds of consecutive facets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,15 +39,15 @@ pub struct Node {
     /// right angle, and [`OPEN`] if a facet belongs to an open shell.
     pub spread: f32,
     /// Offset to the first child; 0 for a leaf.
-    pub skip: u32,
+    pub child_offset: u32,
     /// Position of the first facet.
-    pub first: u32,
+    pub first_facet: u32,
     /// Number of facets.
-    pub count: u32,
+    pub facet_count: u32,
     /// Depths of the facets below the corners and edges of the box.
     pub(crate) cuts: [u8; CUTS],
     /// Bits of the sides of the box, the lower ones first, in which a facet may lie that faces the inside of the box.
-    pub(crate) inward: u8,
+    pub(crate) inward_sides: u8,
 }
 
 /// Bits of all six sides.
@@ -56,29 +56,29 @@ const ALL_SIDES: u8 = 0b11_1111;
 impl Node {
     #[inline]
     pub fn is_leaf(&self) -> bool {
-        self.skip == 0
+        self.child_offset == 0
     }
 
     /// Checks whether the node contains facets of open shells.
     pub(crate) fn is_open(&self) -> bool {
-        self.spread == OPEN
+        self.spread == OPEN_SPREAD
     }
 
     /// Returns the positions of the children of this node, which is at position `at`.
     #[inline]
-    pub(crate) fn children(&self, at: u32) -> [u32; 2] {
-        [at + self.skip, at + self.skip + 1]
+    pub(crate) fn child_positions(&self, at: u32) -> [u32; 2] {
+        [at + self.child_offset, at + self.child_offset + 1]
     }
 
     /// Returns the squared diagonal of the box.
     #[inline]
-    pub(crate) fn size(&self) -> f64 {
-        self.bounds.size().length_squared()
+    pub(crate) fn squared_diagonal(&self) -> f64 {
+        self.bounds.side_lengths().length_squared()
     }
 
     #[inline]
     pub fn facets(&self) -> std::ops::Range<usize> {
-        self.first as usize..(self.first + self.count) as usize
+        self.first_facet as usize..(self.first_facet + self.facet_count) as usize
     }
 }
 
@@ -86,8 +86,8 @@ impl Node {
 #[inline]
 pub(crate) fn split_pair(trees: [&[Node]; 2], pair: [u32; 2]) -> Option<[[u32; 2]; 2]> {
     let nodes = [0, 1].map(|k| &trees[k][pair[k] as usize]);
-    let which = node_to_split(nodes.map(Node::is_leaf), |k| nodes[k].size())?;
-    Some(nodes[which].children(pair[which]).map(|child| replaced(pair, which, child)))
+    let which = node_to_split(nodes.map(Node::is_leaf), |k| nodes[k].squared_diagonal())?;
+    Some(nodes[which].child_positions(pair[which]).map(|child| pair_with_node(pair, which, child)))
 }
 
 /// Data of one facet for the builder.
@@ -105,10 +105,10 @@ struct Item {
 
 impl Item {
     fn new(facet: u32, corners: [DVec3; 3]) -> Self {
-        let (normal, doubt) = normal(corners);
+        let (normal, doubt) = area_vector(corners);
         let area = normal.length();
         let normal = if area > 0.0 { normal / area } else { DVec3::ZERO };
-        Self { facet, bounds: Aabb::of_points(corners), normal, area, doubt }
+        Self { facet, bounds: Aabb::from_points(corners), normal, area, doubt }
     }
 
     /// Returns the sides of an enclosing box in which the facet lies, as bits, without sides where it certainly faces
@@ -144,7 +144,7 @@ impl Boxed for Item {
 /// The bound is 0 for facets in planes of the axes, and [`ANY`] if the error may be as large as the vector.
 /// Derivation: `docs/theory/solid-bounds.md`.
 #[inline]
-pub fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
+pub fn area_vector([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let (u, v) = (b - a, c - a);
     let area = u.cross(v);
     let (x, y) = (u.abs(), v.abs());
@@ -152,7 +152,7 @@ pub fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let error = terms * (4.0 * f64::EPSILON);
     let length = area.length_squared();
     if length <= error.length_squared() {
-        return (area, ANY);
+        return (area, ANY_ANGLE);
     }
     let size = area.abs();
     // `|error x area|` for the worst signs.
@@ -161,7 +161,7 @@ pub fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
         error.z * size.x + error.x * size.z,
         error.x * size.y + error.y * size.x,
     );
-    (area, (across.length() / length).min(ANY))
+    (area, (across.length() / length).min(ANY_ANGLE))
 }
 
 /// Builds the tree. Returns its nodes, and the order in which they list the facets.
@@ -196,12 +196,12 @@ pub(super) fn mark_open_nodes(nodes: &mut [Node], is_open: impl Fn(usize) -> boo
         let open = if node.is_leaf() {
             node.facets().any(&is_open)
         } else {
-            let first = at + node.skip as usize;
+            let first = at + node.child_offset as usize;
             nodes[first].is_open() || nodes[first + 1].is_open()
         };
         if open {
-            nodes[at].spread = OPEN;
-            nodes[at].inward = ALL_SIDES;
+            nodes[at].spread = OPEN_SPREAD;
+            nodes[at].inward_sides = ALL_SIDES;
         }
     }
 }
@@ -222,7 +222,7 @@ impl Builder<'_> {
         threads: usize,
         nodes: &mut Vec<Node>,
     ) -> SignMaxima {
-        let maxima = if items.len() <= LEAF {
+        let maxima = if items.len() <= MAX_LEAF_FACETS {
             self.facet_maxima(items)
         } else {
             self.build_children(items, at, first, threads, nodes)
@@ -251,11 +251,11 @@ impl Builder<'_> {
         threads: usize,
         nodes: &mut Vec<Node>,
     ) -> SignMaxima {
-        let middle = split(items, Rule { least: 1, longest: false });
+        let middle = split_items(items, SplitRule { min_items: 1, only_longest_axis: false });
         let (left, right) = items.split_at_mut(middle);
         let second = first + middle as u32;
         let child = nodes.len();
-        nodes[at].skip = (child - at) as u32;
+        nodes[at].child_offset = (child - at) as u32;
         if threads > 1 && left.len().min(right.len()) >= MIN_THREAD_FACETS {
             let mut behind = Vec::with_capacity(right.len());
             let mut maxima = SignMaxima::NONE;
@@ -271,8 +271,8 @@ impl Builder<'_> {
             maxima.include_maxima(&other);
             // The second child is stored next to the first, its descendants at the end.
             let root = &mut behind[0];
-            if root.skip != 0 {
-                root.skip += (nodes.len() - 1 - (child + 1)) as u32;
+            if root.child_offset != 0 {
+                root.child_offset += (nodes.len() - 1 - (child + 1)) as u32;
             }
             nodes[child + 1] = *root;
             nodes.extend_from_slice(&behind[1..]);
@@ -290,7 +290,7 @@ impl Builder<'_> {
         let mut bounds = Aabb::EMPTY;
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
         for item in items {
-            bounds = bounds.join(&item.bounds);
+            bounds = bounds.union(&item.bounds);
             sum += item.normal * item.area;
             total += item.area;
         }
@@ -298,12 +298,12 @@ impl Builder<'_> {
             bounds,
             axis: DVec3::ZERO,
             slab: [f64::NEG_INFINITY, f64::INFINITY],
-            spread: ANY as f32,
-            skip: 0,
-            first,
-            count: items.len() as u32,
+            spread: ANY_ANGLE as f32,
+            child_offset: 0,
+            first_facet: first,
+            facet_count: items.len() as u32,
             cuts: [0; CUTS],
-            inward: items.iter().fold(0, |sides, item| sides | item.inward_sides(&bounds)),
+            inward_sides: items.iter().fold(0, |sides, item| sides | item.inward_sides(&bounds)),
         };
         // Only a surface with a dominant orientation has an axis.
         if sum.length() > 0.25 * total {
@@ -347,7 +347,7 @@ impl Builder<'_> {
 /// error, a sine. Returns [`ANY`] for both if the angle may be a right angle or more.
 fn normal_deviation(axis: DVec3, item: &Item) -> [f64; 2] {
     if item.doubt >= 1.0 || axis.dot(item.normal) <= 0.0 {
-        return [ANY; 2];
+        return [ANY_ANGLE; 2];
     }
     let squared = axis.cross(item.normal).length_squared();
     let (x, y) = (axis.abs(), item.normal.abs());

@@ -100,7 +100,7 @@ pub(super) fn validated_surface<F: AsRef<[u32]>>(
     if soup.triangles.is_empty() {
         return Err(SolidError::Empty);
     }
-    report.crowded_edges += edges.crowded;
+    report.non_manifold_edges += edges.crowded;
     report.open_edges += edges.open.len();
     soup.check_edges(&edges, open)?;
     let input_counts = [vertices.len() as u32, facets.len() as u32];
@@ -350,7 +350,7 @@ mod tests {
             let surface = validated_surface(&vertices, &facets, false, &mut report).unwrap();
             assert_eq!(report.slits_closed, 1);
             assert_eq!(report.facets_without_area, if degenerate { 2 } else { 0 });
-            assert!(surface.neighbours.iter().flatten().all(|&n| n != edges::NONE));
+            assert!(surface.neighbours.iter().flatten().all(|&n| n != edges::NO_NEIGHBOUR));
             assert_eq!(surface.triangles.len(), 16, "a sphere with 10 vertices has 16 triangles");
         }
     }

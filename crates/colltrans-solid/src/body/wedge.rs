@@ -8,9 +8,9 @@
 use std::cmp::Ordering;
 
 /// Signs of determinants of points around an axis. Points are given by indices.
-pub(crate) trait Axis {
+pub(crate) trait AxisSigns {
     /// Returns the sign of `det[u, x, y]`.
-    fn det(&self, x: usize, y: usize) -> Ordering;
+    fn determinant_sign(&self, x: usize, y: usize) -> Ordering;
     /// Checks whether `x` and `y`, in one plane with the axis, lie on the same side of the axis.
     fn same_half(&self, x: usize, y: usize) -> bool;
 }
@@ -24,7 +24,7 @@ pub(crate) struct Ray {
 
 impl Ray {
     /// Returns the ray towards a point.
-    pub(crate) fn to(point: usize) -> Self {
+    pub(crate) fn towards(point: usize) -> Self {
         Self { point, opposite: false }
     }
 }
@@ -38,24 +38,24 @@ pub(crate) struct Wedge {
 
 impl Wedge {
     /// Checks whether two wedges have a common interior point. A wedge between coincident facets has no interior.
-    pub(crate) fn meets(&self, other: &Self, axis: &impl Axis) -> bool {
+    pub(crate) fn intersects(&self, other: &Self, axis: &impl AxisSigns) -> bool {
         !self.is_empty(axis)
             && !other.is_empty(axis)
             && (self.contains(other.start, axis) || other.contains(self.start, axis))
     }
 
     /// Checks whether the facets of the wedge coincide.
-    pub(crate) fn is_empty(&self, axis: &impl Axis) -> bool {
+    pub(crate) fn is_empty(&self, axis: &impl AxisSigns) -> bool {
         angle_class(self.start, self.end, axis) == 0
     }
 
     /// Checks whether a ray lies in the open arc.
-    pub(crate) fn holds(&self, ray: Ray, axis: &impl Axis) -> bool {
+    pub(crate) fn contains_strictly(&self, ray: Ray, axis: &impl AxisSigns) -> bool {
         angle_class(self.start, ray, axis) != 0 && self.contains(ray, axis)
     }
 
     /// Checks whether a ray lies in the arc, including its start.
-    pub(crate) fn contains(&self, ray: Ray, axis: &impl Axis) -> bool {
+    pub(crate) fn contains(&self, ray: Ray, axis: &impl AxisSigns) -> bool {
         match (angle_class(self.start, ray, axis), angle_class(self.start, self.end, axis)) {
             (0, _) => true,
             (a, b) if a != b => a < b,
@@ -66,13 +66,13 @@ impl Wedge {
 }
 
 /// Returns the sign of `det[u, x, y]` for two rays.
-fn ray_determinant(x: Ray, y: Ray, axis: &impl Axis) -> Ordering {
-    let sign = axis.det(x.point, y.point);
+fn ray_determinant(x: Ray, y: Ray, axis: &impl AxisSigns) -> Ordering {
+    let sign = axis.determinant_sign(x.point, y.point);
     if x.opposite == y.opposite { sign } else { sign.reverse() }
 }
 
 /// Returns the class of the angle from `x` to `y`: 0 for zero, 1 below a half turn, 2 for a half turn, 3 above.
-fn angle_class(x: Ray, y: Ray, axis: &impl Axis) -> u8 {
+fn angle_class(x: Ray, y: Ray, axis: &impl AxisSigns) -> u8 {
     match ray_determinant(x, y, axis) {
         Ordering::Greater => 1,
         Ordering::Less => 3,
@@ -90,8 +90,8 @@ mod tests {
     /// Directions at multiples of 45 degrees.
     struct Rose;
 
-    impl Axis for Rose {
-        fn det(&self, x: usize, y: usize) -> Ordering {
+    impl AxisSigns for Rose {
+        fn determinant_sign(&self, x: usize, y: usize) -> Ordering {
             match (y + 8 - x) % 8 {
                 0 | 4 => Ordering::Equal,
                 1..=3 => Ordering::Greater,
@@ -106,16 +106,16 @@ mod tests {
     #[test]
     fn wedges_intersect_where_their_arcs_overlap() {
         for (a, b, c, d) in (0..4096).map(|i| (i & 7, i >> 3 & 7, i >> 6 & 7, i >> 9 & 7)) {
-            let wedge = |s, e| Wedge { start: Ray::to(s), end: Ray::to(e) };
+            let wedge = |s, e| Wedge { start: Ray::towards(s), end: Ray::towards(e) };
             // Eighths of the circle in the arc, as bits.
             let cover = |s: usize, e: usize| {
                 (0..(e + 8 - s) % 8).fold(0_u8, |mask, k| mask | 1 << ((s + k) % 8))
             };
             let expected = cover(a, b) & cover(c, d) != 0;
-            assert_eq!(wedge(a, b).meets(&wedge(c, d), &Rose), expected, "{a} {b} {c} {d}");
+            assert_eq!(wedge(a, b).intersects(&wedge(c, d), &Rose), expected, "{a} {b} {c} {d}");
             let opposite =
-                Wedge { start: Ray { point: (a + 4) % 8, opposite: true }, end: Ray::to(b) };
-            assert_eq!(opposite.meets(&wedge(c, d), &Rose), expected);
+                Wedge { start: Ray { point: (a + 4) % 8, opposite: true }, end: Ray::towards(b) };
+            assert_eq!(opposite.intersects(&wedge(c, d), &Rose), expected);
         }
     }
 }

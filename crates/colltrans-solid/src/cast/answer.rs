@@ -23,10 +23,10 @@ use super::{
 use super::{StartProof, StopProof, check_thickness, default_tolerance, verify};
 use crate::body::{AsSolid, Solid};
 use crate::solve::bound::Reason;
-use crate::solve::contact::{SolidContact, contact, true_place};
+use crate::solve::contact::{SolidContact, contact_of_facets, nominal_translation};
 use crate::solve::overlap::{self, Overlap};
-use crate::solve::scene::{Scene, noise_and_gap, permutes_axes};
-use crate::solve::search::{Aim, Found, Search, Workspace, node_rounding};
+use crate::solve::scene::{PairFrame, noise_and_gap, permutes_axes};
+use crate::solve::search::{Aim, GapSearch, LeastGap, Workspace, node_rounding};
 use crate::solve::separate::find_separation;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::answer::{Bounded, CertificateError, Clearance, Outcome};
@@ -54,10 +54,10 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
 
     fn tolerance(&self) -> f64 {
         self.options.tolerance.unwrap_or_else(|| {
-            let (setting, keep) = (&self.setting, self.options.keep);
+            let (setting, min_gap) = (&self.setting, self.options.min_gap);
             let permuted =
                 permutes_axes(setting.moving_matrix) && permutes_axes(setting.fixed_matrix);
-            default_tolerance(permuted, noise_and_gap(setting.scale(), keep).0)
+            default_tolerance(permuted, noise_and_gap(setting.size(), min_gap).0)
         })
     }
 
@@ -73,9 +73,11 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
         let aim = match self.options.overlapping {
             Some(false) => Aim::Stop,
             Some(true) if ignored => Aim::LaterStop,
-            _ => match place.or_else(|| overlap::find(scene, &mut steps)) {
+            _ => match place.or_else(|| overlap::find_overlap(scene, &mut steps)) {
                 Some(_) if ignored => Aim::LaterStop,
-                Some(place) => return Ok(Clearance::Overlapping(self.overlap_at(place, steps))),
+                Some(place) => {
+                    return Ok(Clearance::Overlapping(self.start_overlap_at(place, steps)));
+                }
                 None => Aim::Stop,
             },
         };
@@ -96,9 +98,9 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
             stop: None,
             cover: Cover::default(),
         };
-        let aim = match (certificate.aim(self.options()), &certificate.start) {
+        let aim = match (certificate.search_aim(self.options()), &certificate.start) {
             (None, &StartProof::Overlapping(place)) => {
-                let overlap = self.overlap_at(place, steps);
+                let overlap = self.start_overlap_at(place, steps);
                 return Ok((Clearance::Overlapping(overlap), certificate));
             }
             (aim, _) => aim.unwrap_or(Aim::Stop),
@@ -107,8 +109,8 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
         let cut = |nodes, reason| {
             cuts.insert(nodes, reason);
         };
-        let mut search = Search::new(scene, aim, gap_limit(self, scene), cut);
-        let found = search.run(&mut Workspace::default());
+        let mut search = GapSearch::new(scene, aim, gap_limit(self, scene), cut);
+        let found = search.find_least_gap(&mut Workspace::default());
         let end = search.limit;
         steps += search.steps;
         certificate.cover = Cover::new(bodies, &cuts);
@@ -117,7 +119,7 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
             _ => answer_from_search(self, scene, found.as_ref(), steps),
         };
         if let Clearance::Blocked { contact, .. } = &answer {
-            let shrunk_distance = contact.shrunk_distance.value;
+            let shrunk_distance = contact.offset_distance.value;
             certificate.stop = Some(StopProof { shrunk_distance, triangles: contact.triangles });
         }
         certificate.lower = proven_gap(scene, aim, end, &certificate.cover) / scene.setting.length;
@@ -129,39 +131,45 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
         Ok((answer, certificate))
     }
 
-    fn stop_by(&self, triangles: [u32; 2]) -> Option<SolidContact> {
+    fn contact_of_triangles(&self, triangles: [u32; 2]) -> Option<SolidContact> {
         if !contain_triangles(self, triangles) {
             return None;
         }
-        let scene = self.asked();
+        let scene = self.query_scene();
         let later = self.options.overlapping == Some(true)
             && self.options.start_overlap == StartOverlap::Ignore;
         let aim = if later { Aim::LaterStop } else { Aim::Stop };
-        let search = Search::new(&scene, aim, gap_limit(self, &scene), |_, _| ());
-        let found = search.of_pair(triangles)?;
+        let search = GapSearch::new(&scene, aim, gap_limit(self, &scene), |_, _| ());
+        let found = search.compare_triangles(triangles)?;
         // Distances of contacts are at least 0.
-        Some(contact(&scene, &found, found.bounded(&scene).clamped(), SolidSteps::default()))
+        Some(contact_of_facets(
+            &scene,
+            &found,
+            found.bounded(&scene).clamped_to_nonnegative(),
+            SolidSteps::default(),
+        ))
     }
 
-    fn true_place(
+    fn nominal_translation(
         &self,
         triangles: [u32; 2],
         shrunk: Bounded,
         normal: DVec3,
         shift: DVec3,
     ) -> Option<Bounded> {
-        contain_triangles(self, triangles)
-            .then(|| true_place(&self.scene(0.0), triangles, shrunk, normal, shift))
+        contain_triangles(self, triangles).then(|| {
+            nominal_translation(&self.scene_with_tolerance(0.0), triangles, shrunk, normal, shift)
+        })
     }
 
     fn overlaps(&self) -> bool {
-        overlap::find(&self.asked(), &mut SolidSteps::default()).is_some()
+        overlap::find_overlap(&self.query_scene(), &mut SolidSteps::default()).is_some()
     }
 
     fn start_overlap(&self) -> Option<SolidOverlap> {
         let mut steps = SolidSteps::default();
-        let place = find_start_overlap(self, &self.asked(), &mut steps)?;
-        Some(self.overlap_at(place, steps))
+        let place = find_start_overlap(self, &self.query_scene(), &mut steps)?;
+        Some(self.start_overlap_at(place, steps))
     }
 
     fn least_tolerance(&self) -> Option<f64> {
@@ -169,10 +177,12 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
     }
 
     fn first_contact_in(&self, workspace: &mut Workspace) -> Result<Outcome<Solid>, QueryError> {
-        let (scene, mut steps) = (self.scene(0.0), SolidSteps::default());
+        let (scene, mut steps) = (self.scene_with_tolerance(0.0), SolidSteps::default());
         let found = search_least_gap(&scene, Aim::Least, f64::INFINITY, workspace, &mut steps);
         Ok(match found {
-            Some(found) => Outcome::Contact(contact(&scene, &found, found.bounded(&scene), steps)),
+            Some(found) => {
+                Outcome::Contact(contact_of_facets(&scene, &found, found.bounded(&scene), steps))
+            }
             None => Outcome::Separated(SolidFree { separation: find_separation(&scene), steps }),
         })
     }
@@ -182,41 +192,41 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
     }
 
     fn exit_in(&self, workspace: &mut Workspace) -> Option<Bounded> {
-        let scene = self.reversed().scene(0.0);
+        let scene = self.reversed().scene_with_tolerance(0.0);
         let steps = &mut SolidSteps::default();
         let found = search_least_gap(&scene, Aim::Least, f64::INFINITY, workspace, steps)?;
-        Some(found.bounded(&scene).negated().clamped())
+        Some(found.bounded(&scene).negated().clamped_to_nonnegative())
     }
 }
 
 impl<'a> SolidScene<'a> for Cast<'a, Solid> {
     #[inline]
-    fn scene(&self, tolerance: f64) -> Scene<'a> {
-        Scene::new(&self.setting, [tolerance / 2.0; 2], self.options.keep)
+    fn scene_with_tolerance(&self, tolerance: f64) -> PairFrame<'a> {
+        PairFrame::new(&self.setting, [tolerance / 2.0; 2], self.options.min_gap)
     }
 
     #[inline]
-    fn asked(&self) -> Scene<'a> {
-        self.scene(self.tolerance())
+    fn query_scene(&self) -> PairFrame<'a> {
+        self.scene_with_tolerance(self.tolerance())
     }
 
     #[inline]
-    fn asked_of_something(&self) -> Result<Scene<'a>, QueryError> {
+    fn checked_query_scene(&self) -> Result<PairFrame<'a>, QueryError> {
         let tolerance = self.tolerance();
         // A tolerance in the options was checked when it was set.
         if self.options.tolerance.is_none() {
             check_thickness(self, tolerance)?;
         }
-        Ok(self.scene(tolerance))
+        Ok(self.scene_with_tolerance(tolerance))
     }
 
     #[inline]
-    fn overlap_at(&self, place: Overlap, mut steps: SolidSteps) -> SolidOverlap {
+    fn start_overlap_at(&self, place: Overlap, mut steps: SolidSteps) -> SolidOverlap {
         let least_tolerance = least_tolerance_from(self, Some(place), &mut steps);
         SolidOverlap { place, least_tolerance, steps }
     }
 
-    fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof {
+    fn prove_start(&self, scene: &PairFrame, steps: &mut SolidSteps) -> StartProof {
         // An overlap that is the answer is searched for, because the answer contains its place.
         let options = self.options();
         let is_answer =
@@ -232,19 +242,19 @@ impl<'a> SolidScene<'a> for Cast<'a, Solid> {
             steps.count_pair(entry);
             entries.push(entry);
         };
-        match overlap::find_with(scene, &mut note) {
+        match overlap::find_overlap_with(scene, &mut note) {
             Some(overlap) => StartProof::Overlapping(overlap),
             None => StartProof::Apart(Cover(entries)),
         }
     }
 
-    fn verify_start(&self, scene: &Scene, start: &StartProof) -> Result<(), CertificateError> {
+    fn verify_start(&self, scene: &PairFrame, start: &StartProof) -> Result<(), CertificateError> {
         verify::verify_start(self, scene, start)
     }
 }
 
 /// Returns the length from which on gaps are ignored: the end of the query, or infinity.
-fn gap_limit(cast: &Cast<'_, Solid>, scene: &Scene) -> f64 {
+fn gap_limit(cast: &Cast<'_, Solid>, scene: &PairFrame) -> f64 {
     cast.options.before.map_or(f64::INFINITY, |t| t * scene.setting.length)
 }
 
@@ -260,7 +270,7 @@ enum EarlyAnswer {
 /// Returns [`EarlyAnswer::Undecided`] if a search is necessary.
 fn answer_without_search<'a>(
     cast: &Cast<'a, Solid>,
-    scene: &mut Option<Scene<'a>>,
+    scene: &mut Option<PairFrame<'a>>,
     steps: &mut SolidSteps,
 ) -> Result<EarlyAnswer, QueryError> {
     let by_boxes = answer_by_boxes(cast);
@@ -297,11 +307,11 @@ fn answer_without_search<'a>(
 /// leaves nothing of a body.
 fn get_or_build_scene<'a, 's>(
     cast: &Cast<'a, Solid>,
-    scene: &'s mut Option<Scene<'a>>,
-) -> Result<&'s Scene<'a>, QueryError> {
+    scene: &'s mut Option<PairFrame<'a>>,
+) -> Result<&'s PairFrame<'a>, QueryError> {
     Ok(match scene {
         Some(scene) => scene,
-        None => scene.insert(cast.asked_of_something()?),
+        None => scene.insert(cast.checked_query_scene()?),
     })
 }
 
@@ -310,7 +320,7 @@ fn get_or_build_scene<'a, 's>(
 fn hull_overlap(
     cast: &Cast<'_, Solid>,
     hulls: Option<&Hulls>,
-    scene: &Scene,
+    scene: &PairFrame,
     steps: &mut SolidSteps,
 ) -> Option<Overlap> {
     if cast.options.overlapping == Some(false) {
@@ -322,18 +332,18 @@ fn hull_overlap(
 /// Finds a place at which the bodies overlap, first near the contact of their hulls, then by a search.
 fn find_start_overlap(
     cast: &Cast<'_, Solid>,
-    scene: &Scene,
+    scene: &PairFrame,
     steps: &mut SolidSteps,
 ) -> Option<Overlap> {
     let near_contact = hull_overlap(cast, Hulls::of_cast(cast).as_ref(), scene, steps);
-    near_contact.or_else(|| overlap::find(scene, steps))
+    near_contact.or_else(|| overlap::find_overlap(scene, steps))
 }
 
 /// Computes the clearance from the facets around the contact of the hulls; `None` if these do not decide it.
 fn answer_by_hull_contact(
     cast: &Cast<'_, Solid>,
     hulls: &Hulls,
-    scene: &Scene,
+    scene: &PairFrame,
 ) -> Option<Clearance<Solid>> {
     if let Some(answer) = hulls.touching_clearance(cast, scene) {
         return Some(answer);
@@ -350,14 +360,14 @@ fn answer_by_hull_contact(
 
 /// Returns the gap (a length) that the entries of a cover prove, less their rounding errors, after a search that
 /// ended with `limit`. Returns 0 if the cover proves no positive gap or does not fit the bodies.
-fn proven_gap(scene: &Scene, aim: Aim, limit: f64, cover: &Cover) -> f64 {
+fn proven_gap(scene: &PairFrame, aim: Aim, limit: f64, cover: &Cover) -> f64 {
     // The factor is slightly above 1 to cover the rounding of the bound on its way into the proof and out of it.
     let mut lower = limit - 1.0625 * node_rounding(scene);
     if lower <= 0.0 {
         return 0.0;
     }
     let bodies = [scene.moving.solid, scene.fixed.solid];
-    let fits = cover.walk(bodies, |_, nodes, reason| {
+    let fits = cover.visit_entries(bodies, |_, nodes, reason| {
         if reason == Reason::Examined {
             lower = lower.min(leaf_gap_bound(scene, aim, nodes, limit));
         }
@@ -369,8 +379,8 @@ fn proven_gap(scene: &Scene, aim: Aim, limit: f64, cover: &Cover) -> f64 {
 /// Builds the clearance from the pair of facets that a search has found; it is free if there is none.
 fn answer_from_search(
     cast: &Cast<'_, Solid>,
-    scene: &Scene,
-    found: Option<&Found>,
+    scene: &PairFrame,
+    found: Option<&LeastGap>,
     steps: SolidSteps,
 ) -> Clearance<Solid> {
     let Some(found) = found else {
@@ -379,7 +389,8 @@ fn answer_from_search(
         return Clearance::Free(SolidFree { separation, steps });
     };
     // Distances of contacts are at least 0.
-    let contact = contact(scene, found, found.bounded(scene).clamped(), steps);
+    let contact =
+        contact_of_facets(scene, found, found.bounded(scene).clamped_to_nonnegative(), steps);
     Clearance::Blocked { distance: contact.translation.lower.max(0.0), contact }
 }
 
@@ -392,14 +403,14 @@ fn contain_triangles(cast: &Cast<'_, Solid>, triangles: [u32; 2]) -> bool {
 /// Searches for the pair of facets with the least gap below `limit` (a length); `None` if there is none. Adds the
 /// work to `steps`.
 fn search_least_gap(
-    scene: &Scene,
+    scene: &PairFrame,
     aim: Aim,
     limit: f64,
     workspace: &mut Workspace,
     steps: &mut SolidSteps,
-) -> Option<Found> {
-    let mut search = Search::new(scene, aim, limit, |_, _| ());
-    let found = search.run(workspace);
+) -> Option<LeastGap> {
+    let mut search = GapSearch::new(scene, aim, limit, |_, _| ());
+    let found = search.find_least_gap(workspace);
     *steps += search.steps;
     found
 }

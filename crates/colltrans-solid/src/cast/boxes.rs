@@ -30,10 +30,10 @@ pub(super) enum BoxAnswer {
 /// overlap.
 pub(super) fn answer_by_boxes(cast: &Cast<'_, Solid>) -> BoxAnswer {
     let (setting, options) = (&cast.setting, cast.options);
-    if options.keep > 0.0 || options.overlapping == Some(true) {
+    if options.min_gap > 0.0 || options.overlapping == Some(true) {
         return BoxAnswer::Undecided;
     }
-    let noise = setting.noise().point();
+    let noise = setting.noise().point_error();
     let boxes = Boxes::new(setting, &[cast.moving().bounds(), cast.fixed().bounds()]);
     // The boxes of the offset bodies are smaller.
     let slack = TOUCHING_NOISES * noise
@@ -74,6 +74,6 @@ pub(super) fn moves_away(cast: &Cast<'_, Solid>, amount: f64) -> bool {
 fn offset_boxes<'c>(cast: &'c Cast<'_, Solid>, amount: f64) -> (Boxes<'c, 'c>, f64) {
     let bodies = [cast.moving(), cast.fixed()];
     let moved: f64 = bodies.map(|body| body.max_offset_displacement(amount)).iter().sum();
-    let noise = Noise::of(cast.setting.scale() + moved).point();
+    let noise = Noise::for_size(cast.setting.size() + moved).point_error();
     (Boxes::new(&cast.setting, &bodies.map(|body| body.offset_bounds(amount))), noise)
 }

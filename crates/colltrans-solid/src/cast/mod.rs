@@ -58,7 +58,7 @@ pub enum StartOverlap {
     Ignore,
 }
 
-colltrans_kernel::written::named!(
+colltrans_kernel::serialization::named!(
     "treatment of an overlap",
     StartOverlap { Refuse: "refuse", Ignore: "ignore" }
 );
@@ -70,8 +70,9 @@ colltrans_kernel::written::named!(
 pub struct SolidOptions {
     /// Treatment of an overlap at the start.
     pub start_overlap: StartOverlap,
-    /// Tolerance, a length in world units. Both bodies are offset inwards by half of it. `None` is 0 if both poses
-    /// are quarter turns, and eight noises (`256 u S`) otherwise, because rounding can change a fit by that length.
+    /// Tolerance, a length in world units. Both bodies are offset inwards by half of it. `None` is 0 if the rotations
+    /// of both poses only permute axes and change signs, and eight noises (`256 u S`) otherwise, because rounding can
+    /// change a fit by that length.
     pub tolerance: Option<f64>,
     /// End of the query, in multiples of the direction. Contacts of the offset bodies at this translation or beyond
     /// are ignored. For a body that is cast against many others, this is the smallest `shrunk_distance` found
@@ -84,9 +85,9 @@ pub struct SolidOptions {
     /// Minimum gap (world units), see [`Cast::keeping`]. With `0`, the default, bodies block when they touch.
     #[cfg_attr(
         feature = "serde",
-        serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")
+        serde(default, skip_serializing_if = "colltrans_kernel::serialization::is_zero")
     )]
-    pub keep: f64,
+    pub min_gap: f64,
 }
 
 impl SolidOptions {
@@ -111,8 +112,8 @@ impl SolidOptions {
 
     /// Returns the options with a minimum gap in world units. [`Cast::with_options`] checks the value.
     #[must_use]
-    pub const fn with_keep(self, keep: f64) -> Self {
-        Self { keep, ..self }
+    pub const fn with_min_gap(self, min_gap: f64) -> Self {
+        Self { min_gap: min_gap, ..self }
     }
 
     /// Returns the options with a known result of [`SolidCast::overlaps`], or without one.
@@ -153,7 +154,7 @@ pub struct SolidFree {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct SolidMeeting {
+pub struct SolidIntersection {
     /// Two facets with a common point, or a shell inside the other body. `None` if the bodies do not meet.
     pub place: Option<Overlap>,
     /// Work done.
@@ -161,7 +162,7 @@ pub struct SolidMeeting {
 }
 
 impl RangeEnd for SolidContact {
-    fn bounded(&self) -> Bounded {
+    fn bounded_translation(&self) -> Bounded {
         self.translation
     }
 }
@@ -172,7 +173,7 @@ impl RangeEnd for SolidContact {
 pub enum NoGrazing {}
 
 impl RangeEnd for NoGrazing {
-    fn bounded(&self) -> Bounded {
+    fn bounded_translation(&self) -> Bounded {
         match *self {}
     }
 }
@@ -184,7 +185,7 @@ impl Body for Solid {
     type Separated = SolidFree;
     type Free = SolidFree;
     type Overlap = SolidOverlap;
-    type Evidence = SolidMeeting;
+    type Evidence = SolidIntersection;
     type Near = SolidNear;
     type Gap = SolidGap;
     type Steps = SolidSteps;
@@ -201,7 +202,7 @@ impl CastBody for Solid {
     type CastProof<'p> = SolidProof<'p>;
 
     fn check_options(cast: &Cast<'_, Self>) -> Result<(), QueryError> {
-        check_min_gap(cast.options.keep)?;
+        check_min_gap(cast.options.min_gap)?;
         let Some(tolerance) = cast.options.tolerance else { return Ok(()) };
         if !(tolerance.is_finite() && tolerance >= 0.0) {
             return Err(QueryError::Tolerance { tolerance });
@@ -210,8 +211,8 @@ impl CastBody for Solid {
     }
 
     #[inline]
-    fn keeping(options: SolidOptions, gap: f64) -> SolidOptions {
-        options.with_keep(gap)
+    fn with_min_gap(options: SolidOptions, gap: f64) -> SolidOptions {
+        options.with_min_gap(gap)
     }
 
     fn first_contact(cast: &Cast<'_, Self>) -> Result<Outcome<Self>, QueryError> {
@@ -240,8 +241,8 @@ impl CastBody for Solid {
 
     fn intersects(cast: &Cast<'_, Self>) -> Result<Intersection<Self>, QueryError> {
         let mut steps = SolidSteps::default();
-        let place = overlap::find_contact(&cast.scene(0.0), &mut steps);
-        let evidence = SolidMeeting { place, steps };
+        let place = overlap::find_contact(&cast.scene_with_tolerance(0.0), &mut steps);
+        let evidence = SolidIntersection { place, steps };
         Ok(Intersection { meets: place.is_some(), evidence })
     }
 
@@ -249,7 +250,7 @@ impl CastBody for Solid {
         match proof {
             SolidProof::Clearance(certificate) => verify::verify_clearance(cast, certificate),
             SolidProof::Separation(separation) => {
-                separate::verify_separation(&cast.asked(), separation)
+                separate::verify_separation(&cast.query_scene(), separation)
             }
         }
     }
@@ -258,8 +259,8 @@ impl CastBody for Solid {
 /// Checks that the offset of a tolerance leaves something of both bodies, by their boxes.
 fn check_thickness(cast: &Cast<'_, Solid>, tolerance: f64) -> Result<(), QueryError> {
     for (which, solid) in [("moving", cast.moving()), ("fixed", cast.fixed())] {
-        if solid.vanishes(tolerance / 2.0) {
-            let extent = solid.thickness();
+        if solid.vanishes_under_offset(tolerance / 2.0) {
+            let extent = solid.min_side();
             return Err(QueryError::NothingLeft { which, tolerance, extent });
         }
     }

@@ -15,11 +15,11 @@ use super::{SolidOptions, StartOverlap};
 use crate::body::Solid;
 use crate::body::tree::split_pair;
 use crate::solve::bound::{Profile, Reason, reason_holds};
+use crate::solve::edge_on::{self, EdgeOnFacet};
 use crate::solve::leaf::{self, Facet, Gap, Meeting};
 use crate::solve::overlap::Overlap;
 use crate::solve::projected::Projected;
-use crate::solve::rim::{self, EdgeOnFacet};
-use crate::solve::scene::Scene;
+use crate::solve::scene::PairFrame;
 use crate::solve::search::{Aim, node_rounding};
 use crate::solve::separating_axes::SeparatingAxes;
 use colltrans_convex::cast::Cast;
@@ -35,11 +35,15 @@ use colltrans_convex::cast::Cast;
 pub struct SolidCertificate {
     /// Tolerance, a length in world units. Both bodies are offset inwards by half of it.
     pub tolerance: f64,
-    /// Proof whether the offset bodies overlap at the start.
+    /// Proof that the offset bodies overlap at the start, or that they do not.
     pub start: StartProof,
-    /// Lower bound of the distance, in multiples of the direction. No pair of facets of the offset bodies blocks
-    /// before. It is infinite if no pair ever blocks, and 0 if the answer is an overlap.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
+    /// Lower bound of the distance, in multiples of the direction. No pair of facets of the offset bodies blocks before
+    /// this translation. It is infinite if no pair ever blocks and the query has no end ([`SolidOptions::before`]), and
+    /// 0 if the answer is an overlap.
+    #[cfg_attr(
+        feature = "serde",
+        serde(with = "colltrans_kernel::serialization::null_as_infinity")
+    )]
     pub lower: f64,
     /// Pair of facets that blocks the moving body; `None` if nothing blocks, or if the answer is an overlap.
     pub stop: Option<StopProof>,
@@ -47,7 +51,7 @@ pub struct SolidCertificate {
     pub cover: Cover,
 }
 
-/// Proof whether the offset bodies overlap at the start.
+/// Proof that the offset bodies overlap at the start, or that they do not.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -73,7 +77,7 @@ pub enum StartProof {
 )]
 pub struct StopProof {
     /// Least gap of the facets of the offset bodies, in multiples of the direction, at least 0. It is the value of
-    /// [`SolidContact::shrunk_distance`](crate::SolidContact::shrunk_distance).
+    /// [`SolidContact::offset_distance`](crate::SolidContact::offset_distance).
     #[cfg_attr(feature = "serde", serde(rename = "distance"))]
     pub shrunk_distance: f64,
     /// Positions in [`Solid::triangles`] of the moving and of the fixed body.
@@ -138,7 +142,7 @@ impl<R: Copy> Cover<R> {
     /// # Errors
     /// Returns the number of the first entry that `check` rejects or that does not fit the trees. If the cover ends
     /// too early, this is its length.
-    pub(crate) fn walk(
+    pub(crate) fn visit_entries(
         &self,
         bodies: [&Solid; 2],
         mut check: impl FnMut(usize, [u32; 2], R) -> bool,
@@ -159,9 +163,9 @@ impl<R: Copy> Cover<R> {
     }
 
     /// Lists the statements of the cover with their facets; `None` if the cover does not fit the bodies.
-    pub(crate) fn claims_of(&self, bodies: [&Solid; 2]) -> Option<Vec<Claim<R>>> {
+    pub(crate) fn claims_between(&self, bodies: [&Solid; 2]) -> Option<Vec<Claim<R>>> {
         let mut claims = Vec::new();
-        let walked = self.walk(bodies, |_, nodes, reason| {
+        let walked = self.visit_entries(bodies, |_, nodes, reason| {
             let [moving, fixed] = [0, 1].map(|k| bodies[k].nodes()[nodes[k] as usize].facets());
             claims.push(Claim { moving, fixed, reason });
             true
@@ -189,7 +193,7 @@ impl<R: Copy> Cover<R> {
 impl Cover {
     /// Lists the statements of the cover with their facets; `None` if the cover does not fit the bodies.
     pub fn claims(&self, cast: &Cast<'_, Solid>) -> Option<Vec<Claim>> {
-        self.claims_of([cast.moving(), cast.fixed()])
+        self.claims_between([cast.moving(), cast.fixed()])
     }
 }
 
@@ -197,7 +201,7 @@ impl SolidCertificate {
     /// Returns the aim of the search that the certificate replaces; `None` if the answer is an overlap.
     #[doc(hidden)]
     #[inline]
-    pub fn aim(&self, options: SolidOptions) -> Option<Aim> {
+    pub fn search_aim(&self, options: SolidOptions) -> Option<Aim> {
         let overlapping = match self.start {
             StartProof::Assumed => options.overlapping == Some(true),
             StartProof::Overlapping(_) => true,
@@ -213,7 +217,7 @@ impl SolidCertificate {
 
 /// Returns a lower bound, a length, of the gaps that count for `aim` between facets of two leaves: the least gap
 /// less its rounding errors. Pairs with gaps of at least `limit` may be left out. Infinity if no pair remains.
-pub(crate) fn leaf_gap_bound(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f64) -> f64 {
+pub(crate) fn leaf_gap_bound(scene: &PairFrame, aim: Aim, nodes: [u32; 2], limit: f64) -> f64 {
     use std::cmp::Ordering::{Greater, Less};
     let facing_facets = |moving: bool, at: u32, wanted| -> Vec<Facet> {
         let facets = scene.side(moving).solid.nodes()[at as usize].facets();
@@ -237,9 +241,9 @@ pub(crate) fn leaf_gap_bound(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f6
             least = least.min(value.unwrap_or(f64::INFINITY));
         }
     }
-    if rim::may_have_edge_on(scene, nodes) {
+    if edge_on::may_have_edge_on(scene, nodes) {
         let [f, g] = [true, false].map(|m| EdgeOnFacet::of_leaf(scene, m, nodes[usize::from(!m)]));
-        rim::each_gap(scene, (&f, &front), (&g, &back), &mut |_, gap| {
+        edge_on::each_gap(scene, (&f, &front), (&g, &back), &mut |_, gap| {
             least = least
                 .min(aim.contribution(&gap).map_or(f64::INFINITY, |value| value - scene.noise));
         });
@@ -250,7 +254,7 @@ pub(crate) fn leaf_gap_bound(scene: &Scene, aim: Aim, nodes: [u32; 2], limit: f6
 /// Checks whether an entry of a cover holds that is not a pair of examined leaves. `lower` is the bound that is
 /// claimed, as a length.
 pub(crate) fn entry_holds(
-    (scene, axes): (&Scene, &SeparatingAxes),
+    (scene, axes): (&PairFrame, &SeparatingAxes),
     aim: Aim,
     nodes: [u32; 2],
     reason: Reason,

@@ -6,7 +6,7 @@ use super::{SolidCertificate, SolidOverlap, StartOverlap, StartProof};
 use crate::body::{AsSolid, Solid};
 use crate::solve::contact::SolidContact;
 use crate::solve::overlap::Overlap;
-use crate::solve::scene::Scene;
+use crate::solve::scene::PairFrame;
 use crate::solve::search::Workspace;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::answer::{Bounded, CertificateError, Clearance, Outcome};
@@ -72,8 +72,8 @@ pub trait SolidCast<'a>: Sized {
     /// pair of nodes.
     ///
     /// Answers for convex bodies always contain their certificate, because the search ends with it. For solids a
-    /// certificate takes another pass over all that the search dismissed, and as much memory. Therefore it is
-    /// computed on request only.
+    /// certificate requires a search even if boxes or hulls decide the clearance. It also takes another pass over all
+    /// that the search dismissed, and as much memory. Therefore it is computed on request only.
     ///
     /// # Errors
     /// Those of [`Cast::clearance`](colltrans_convex::Cast::clearance).
@@ -86,17 +86,17 @@ pub trait SolidCast<'a>: Sized {
     /// of their contact. Triangles that cross at the start are ignored only if
     /// [`SolidOptions::overlapping`](super::SolidOptions::overlapping) is `Some(true)` and overlaps are to be
     /// ignored.
-    fn stop_by(&self, triangles: [u32; 2]) -> Option<SolidContact>;
+    fn contact_of_triangles(&self, triangles: [u32; 2]) -> Option<SolidContact>;
 
-    /// Computes where two triangles meet in nominal position that block the bodies after [`Solid::shrunk`]. The
-    /// result relates to `shrunk` as [`SolidContact::translation`] to [`SolidContact::shrunk_distance`]. `None` if
-    /// a position is out of range.
+    /// Computes the translation at which two triangles meet in nominal position if they block the bodies after
+    /// [`Solid::shrunk`]. The result relates to `shrunk` as [`SolidContact::translation`] to
+    /// [`SolidContact::offset_distance`]. `None` if a position is out of range.
     ///
     /// - `triangles`: positions in [`Solid::triangles`] of the moving and the fixed body.
     /// - `shrunk`: distance of the offset bodies, in multiples of the direction.
     /// - `normal`: normal of their contact, in the world.
     /// - `shift`: displacement of the contact point on the moving body by the offset, less that of the fixed body.
-    fn true_place(
+    fn nominal_translation(
         &self,
         triangles: [u32; 2],
         shrunk: Bounded,
@@ -161,21 +161,21 @@ pub trait SolidCast<'a>: Sized {
 #[doc(hidden)]
 pub trait SolidScene<'a> {
     /// Builds the scene with both bodies offset inwards by half of `tolerance` (world units).
-    fn scene(&self, tolerance: f64) -> Scene<'a>;
+    fn scene_with_tolerance(&self, tolerance: f64) -> PairFrame<'a>;
 
     /// Builds the scene at the tolerance of the query.
-    fn asked(&self) -> Scene<'a>;
+    fn query_scene(&self) -> PairFrame<'a>;
 
     /// Builds the scene at the tolerance of the query. Returns an error if the default tolerance leaves nothing of
     /// a body.
-    fn asked_of_something(&self) -> Result<Scene<'a>, QueryError>;
+    fn checked_query_scene(&self) -> Result<PairFrame<'a>, QueryError>;
 
     /// Computes the least tolerance of an overlap at a place; the result contains `steps` with this work added.
-    fn overlap_at(&self, place: Overlap, steps: SolidSteps) -> SolidOverlap;
+    fn start_overlap_at(&self, place: Overlap, steps: SolidSteps) -> SolidOverlap;
 
     /// Proves whether the bodies of a scene overlap, unless the options state it. Adds the work to `steps`.
-    fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof;
+    fn prove_start(&self, scene: &PairFrame, steps: &mut SolidSteps) -> StartProof;
 
     /// Verifies a proof of [`Self::prove_start`].
-    fn verify_start(&self, scene: &Scene, start: &StartProof) -> Result<(), CertificateError>;
+    fn verify_start(&self, scene: &PairFrame, start: &StartProof) -> Result<(), CertificateError>;
 }

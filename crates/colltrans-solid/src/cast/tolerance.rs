@@ -13,7 +13,7 @@ use super::{SolidScene, check_thickness, hulls};
 use crate::body::Solid;
 use crate::solve::overlap::{self, Overlap};
 use crate::solve::parted;
-use crate::solve::scene::Scene;
+use crate::solve::scene::PairFrame;
 use crate::solve::separate;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::cast::Cast;
@@ -38,9 +38,9 @@ pub(crate) fn least_tolerance_from(
     place: Option<Overlap>,
     steps: &mut SolidSteps,
 ) -> Option<f64> {
-    let nominal = cast.scene(0.0);
+    let nominal = cast.scene_with_tolerance(0.0);
     let known = place.filter(|&place| overlap::is_overlap(&nominal, place));
-    let Some(mut place) = known.or_else(|| overlap::find(&nominal, steps)) else {
+    let Some(mut place) = known.or_else(|| overlap::find_overlap(&nominal, steps)) else {
         return Some(0.0);
     };
     if !(cast.moving().is_closed() && cast.fixed().is_closed()) {
@@ -48,10 +48,14 @@ pub(crate) fn least_tolerance_from(
     }
     // A closed body that is offset by more than its thickness turns inside out.
     let vanishes = |tolerance: f64| check_thickness(cast, tolerance).is_err();
-    let shrunk = |tolerance: f64| nominal.shrunk(tolerance / 2.0, tolerance / 2.0);
+    let shrunk = |tolerance: f64| nominal.with_offsets(tolerance / 2.0, tolerance / 2.0);
     // As long as the offset turns nothing inside out, a larger tolerance does not create an overlap.
-    let max_offset_tolerance =
-        2.0 * cast.moving().shrinking().most.min(cast.fixed().shrinking().most);
+    let max_offset_tolerance = 2.0
+        * cast
+            .moving()
+            .offset_field()
+            .max_rate_amount
+            .min(cast.fixed().offset_field().max_rate_amount);
     let mut overlapping = 0.0;
     for _ in 0..MAX_PLACES {
         let ends = [overlapping, max_offset_tolerance];
@@ -63,7 +67,7 @@ pub(crate) fn least_tolerance_from(
         if facets_separate_bodies(&shrunk(clear), place) {
             return Some(clear);
         }
-        let Some(next) = overlap::find(&shrunk(least), steps) else { return Some(least) };
+        let Some(next) = overlap::find_overlap(&shrunk(least), steps) else { return Some(least) };
         (place, overlapping) = (next, least);
     }
     let convex = !nominal.has_min_gap() && hulls::are_convex(cast);
@@ -81,7 +85,7 @@ pub(crate) fn least_tolerance_from(
             between = Some(normal);
             return true;
         }
-        let found = overlap::find(&smaller, steps);
+        let found = overlap::find_overlap(&smaller, steps);
         place = found.unwrap_or(place);
         found.is_none()
     };
@@ -92,7 +96,7 @@ pub(crate) fn least_tolerance_from(
 
 /// Checks whether the plane with the widest gap between the two facets of a place separates the bodies. Returns
 /// `false` for a shell.
-fn facets_separate_bodies(scene: &Scene, place: Overlap) -> bool {
+fn facets_separate_bodies(scene: &PairFrame, place: Overlap) -> bool {
     let plane = overlap::widest_separation(scene, place);
     plane.is_some_and(|(gap, normal)| gap > 0.0 && separate::is_separating(scene, normal))
 }
@@ -101,12 +105,12 @@ fn facets_separate_bodies(scene: &Scene, place: Overlap) -> bool {
 /// the bodies are known to overlap. `None` if the result is beyond `max_offset_tolerance`. Adds the number of tests
 /// of the place to `tests`.
 fn place_tolerance(
-    nominal: &Scene,
+    nominal: &PairFrame,
     place: Overlap,
     [overlapping, max_offset_tolerance]: [f64; 2],
     tests: &mut u32,
 ) -> Option<f64> {
-    let shrunk = |tolerance: f64| nominal.shrunk(tolerance / 2.0, tolerance / 2.0);
+    let shrunk = |tolerance: f64| nominal.with_offsets(tolerance / 2.0, tolerance / 2.0);
     let mut is_gone = |tolerance| {
         *tests += 1;
         tolerance > overlapping && !overlap::is_overlap(&shrunk(tolerance), place)
@@ -147,9 +151,9 @@ fn tolerance_accuracy(tolerance: f64, noise: f64) -> f64 {
     (RELATIVE_ACCURACY * tolerance).max(ACCURACY_NOISES * noise)
 }
 
-/// Brackets the tolerance from which on a condition holds, near a guess. The condition does not hold up to the
-/// lower end of the range. Returns a tolerance at which it does not hold and one at which it does. `None` if it
-/// does not hold up to the upper end.
+/// Brackets the tolerance at which a condition begins to hold, near a guess. The distance from the guess grows by a
+/// factor of 4 in each step. The condition must not hold at the lower end of the range. Returns a tolerance at which it
+/// does not hold, possibly that end, and one at which it does. `None` if it does not hold up to the upper end.
 fn bracket_around(
     guess: f64,
     [mut low, last]: [f64; 2],
@@ -179,7 +183,7 @@ fn bracket_around(
     None
 }
 
-/// Brackets the tolerance from which on a condition holds, by doubling the lower end of the range or the noise.
+/// Brackets the tolerance at which a condition begins to hold, by doubling the lower end of the range or the noise.
 /// `None` if it does not hold up to the upper end.
 fn bracket_by_doubling(
     [mut low, last]: [f64; 2],

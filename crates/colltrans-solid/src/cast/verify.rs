@@ -7,10 +7,10 @@ use crate::solve::bound::{Reason, are_separated};
 use crate::solve::leaf;
 use crate::solve::overlap::{is_overlap, leaves_apart, nested_shell, never_overlap};
 use crate::solve::projected::Projected;
-use crate::solve::scene::Scene;
+use crate::solve::scene::PairFrame;
 use crate::solve::search::{Aim, SLACK, exact_gap, node_rounding};
 use crate::solve::separating_axes::SeparatingAxes;
-use colltrans_convex::answer::{CertificateError, Separation, checked_as};
+use colltrans_convex::answer::{CertificateError, Separation, impl_from_proofs};
 use colltrans_convex::cast::Cast;
 
 /// Certificate between solids, of a clearance or of a plane between the bodies.
@@ -22,7 +22,7 @@ pub enum SolidProof<'a> {
     Separation(&'a Separation),
 }
 
-checked_as!(SolidProof { Clearance(SolidCertificate), Separation(Separation) });
+impl_from_proofs!(SolidProof { Clearance(SolidCertificate), Separation(Separation) });
 
 /// Minimum positive length of a proven bound. It is far below the rounding errors of the coordinates of any body.
 const MIN_LENGTH: f64 = f64::MIN_POSITIVE / f64::EPSILON;
@@ -39,12 +39,12 @@ pub(super) fn verify_clearance(
     let SolidCertificate { tolerance, start, lower, stop, cover } = certificate;
     let (claimed, asked) = (*tolerance, cast.tolerance());
     if claimed != asked {
-        return Err(CertificateError::OtherTolerance { claimed, asked });
+        return Err(CertificateError::OtherTolerance { claimed, expected: asked });
     }
-    let scene = cast.asked();
+    let scene = cast.query_scene();
     let options = cast.options();
     cast.verify_start(&scene, start)?;
-    let Some(aim) = certificate.aim(options) else {
+    let Some(aim) = certificate.search_aim(options) else {
         let is_empty = *lower == 0.0 && stop.is_none() && cover.is_empty();
         return if is_empty { Ok(0.0) } else { Err(CertificateError::Cover { entry: 0 }) };
     };
@@ -69,14 +69,14 @@ pub(super) fn verify_clearance(
     }
 }
 
-/// Verifies the proof whether the bodies overlap at the start.
+/// Verifies the proof that the offset bodies overlap at the start, or that they do not.
 ///
 /// # Errors
-/// Returns an error if the place does not overlap, the proof disagrees with the options, or an entry of the cover
-/// does not hold.
+/// Returns an error if the bodies do not overlap at the stated place, the proof disagrees with the options, an entry of
+/// the cover does not hold, or a shell of one body is inside the other.
 pub(super) fn verify_start(
     cast: &Cast<'_, Solid>,
-    scene: &Scene,
+    scene: &PairFrame,
     start: &StartProof,
 ) -> Result<(), CertificateError> {
     let assumed = cast.options().overlapping;
@@ -85,15 +85,15 @@ pub(super) fn verify_start(
         StartProof::Overlapping(overlap) => assumed != Some(false) && is_overlap(scene, *overlap),
         StartProof::Apart(cover) => return verify_apart(scene, cover),
     };
-    if holds { Ok(()) } else { Err(CertificateError::Start) }
+    if holds { Ok(()) } else { Err(CertificateError::StartClaim) }
 }
 
 /// Verifies that the interiors are disjoint at the start.
-fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
+fn verify_apart(scene: &PairFrame, cover: &Cover) -> Result<(), CertificateError> {
     let bodies = [scene.moving.solid, scene.fixed.solid];
     let projected = |moving: bool, at: u32| Projected::new(scene, scene.side(moving), at as usize);
     let boxes_disjoint = never_overlap(scene, &projected(true, 0), &projected(false, 0));
-    let walked = cover.walk(bodies, |_, nodes, reason| match reason {
+    let walked = cover.visit_entries(bodies, |_, nodes, reason| match reason {
         Reason::Disjoint if nodes == [0, 0] && boxes_disjoint => true,
         Reason::Disjoint => {
             are_separated(scene, &projected(true, nodes[0]), &projected(false, nodes[1]))
@@ -110,14 +110,14 @@ fn verify_apart(scene: &Scene, cover: &Cover) -> Result<(), CertificateError> {
     });
     walked.map_err(|entry| CertificateError::Cover { entry })?;
     if !boxes_disjoint && nested_shell(scene).is_some() {
-        return Err(CertificateError::Start);
+        return Err(CertificateError::StartClaim);
     }
     Ok(())
 }
 
 /// Verifies that no pair of facets contributes less than `lower`, in multiples of the direction.
 fn verify_cover(
-    scene: &Scene,
+    scene: &PairFrame,
     aim: Aim,
     cover: &Cover,
     lower: f64,
@@ -131,7 +131,7 @@ fn verify_cover(
     // The factor covers one rounding of the division and one of this product.
     let least = (lower * scene.setting.length) * (1.0 - 2.0 * f64::EPSILON);
     let axes = SeparatingAxes::new(scene);
-    let walked = cover.walk(bodies, |_, nodes, reason| {
+    let walked = cover.visit_entries(bodies, |_, nodes, reason| {
         if reason != Reason::Examined {
             return entry_holds((scene, &axes), aim, nodes, reason, least);
         }
@@ -143,9 +143,9 @@ fn verify_cover(
 
 /// Verifies that two facets block the moving body at the claimed distance. Returns the error of their gap, a
 /// length, if a minimum gap is set, and 0 otherwise.
-fn verify_stop(scene: &Scene, aim: Aim, stop: &StopProof) -> Result<f64, CertificateError> {
+fn verify_stop(scene: &PairFrame, aim: Aim, stop: &StopProof) -> Result<f64, CertificateError> {
     let [s, t] = stop.triangles;
-    let refused = CertificateError::triangles(stop.triangles);
+    let refused = CertificateError::blocking_triangles(stop.triangles);
     let within = |side: bool, k: u32| (k as usize) < scene.side(side).solid.triangles().len();
     if !within(true, s) || !within(false, t) {
         return Err(refused);

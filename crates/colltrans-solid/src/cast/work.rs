@@ -8,7 +8,7 @@ use glam::{DQuat, DVec3};
 use crate::Solid;
 use crate::pair::SolidPairSearch;
 use colltrans_convex::{Cast, Pair, Pose};
-use colltrans_kernel::work::{assert_growth, looks};
+use colltrans_kernel::visit_counter::{assert_growth, visits_during};
 
 fn rotation() -> DQuat {
     Random::new(5).rotation()
@@ -28,17 +28,17 @@ fn distance_proof_needs_no_second_search() {
         let pair = Pair::new(ball.at(pose), plate.at(Pose::IDENTITY)).expect("a pair");
         let rebuilt_pair =
             Pair::new(rebuilt[0].at(pose), rebuilt[1].at(Pose::IDENTITY)).expect("a pair");
-        let without = looks(|| drop(pair.distance()));
-        let with = looks(|| {
-            let (_, found) = pair.ask(true).expect("an answer");
-            rebuilt_pair.prove(found).expect("a proof");
+        let without = visits_during(|| drop(pair.distance()));
+        let with = visits_during(|| {
+            let (_, found) = pair.distance_with_proof_input(true).expect("an answer");
+            rebuilt_pair.prove_lower_bound(found).expect("a proof");
         });
         assert!(with == without && without > 0, "{with} and {without} visits at {far}");
         let length = 0.999 * pair.distance().expect("an answer").lower;
-        let without = looks(|| drop(pair.within(length)));
-        let with = looks(|| {
-            let (_, found) = pair.decide(length, true).expect("an answer");
-            rebuilt_pair.prove(found).expect("a proof");
+        let without = visits_during(|| drop(pair.within(length)));
+        let with = visits_during(|| {
+            let (_, found) = pair.within_with_proof_input(length, true).expect("an answer");
+            rebuilt_pair.prove_lower_bound(found).expect("a proof");
         });
         assert_eq!(with, without, "{far}");
     }
@@ -60,7 +60,7 @@ fn shrink_report_of_comb_is_subquadratic() {
     let by_ears = |teeth| extruded(&comb_outline(teeth), [0.0, 1.0]);
     let shrink_looks = |Mesh { vertices, faces }: Mesh| {
         let solid = Solid::from_mesh(&vertices, &faces).expect("a comb");
-        looks(|| assert!(solid.shrink_report(1e-4).inverted.is_empty()))
+        visits_during(|| assert!(solid.shrink_report(1e-4).inverted.is_empty()))
     };
     for (what, counts) in [
         ("fans", [400, 2_000].map(|teeth| shrink_looks(comb(teeth)))),
@@ -101,7 +101,7 @@ fn clearance_of_flat_bodies_needs_no_exact_integers() {
             let run_query = || assert!(!cast.clearance().expect("an answer").is_free());
             // The first query builds the hull.
             run_query();
-            assert_eq!(looks(run_query), 0, "{turn} from {height}");
+            assert_eq!(visits_during(run_query), 0, "{turn} from {height}");
         }
     }
 }

@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::projected::Projected;
-use super::scene::{Corner, Scene, Side};
+use super::scene::{PairFrame, PlacedBody, PlacedVertex};
 use super::separating_axes::Reach;
 use colltrans_convex::body::Aabb;
 
@@ -27,14 +27,14 @@ pub enum Reason {
     FixedFacesAway,
     /// The interiors of their shadows are disjoint.
     ShadowsApart,
-    /// No gap is positive, and no pair of facets has a gap of zero over its whole common shadow, so the facets
-    /// separate.
+    /// No gap is positive, and no pair of facets has a gap of zero over its whole common shadow. Therefore no pair
+    /// blocks.
     Parting,
     /// The least gap is not smaller than the answer.
     NotBefore,
     /// Both nodes are leaves, and each pair of their facets was compared individually.
     Examined,
-    /// The nodes have no point in common at the start.
+    /// The nodes have no point in common at the start. For both roots, only their interiors need to be disjoint.
     Disjoint,
     /// The facets lie in one plane and face each other, so they show no overlap.
     FaceToFace,
@@ -84,9 +84,9 @@ pub(crate) fn dismissal_reason(
     (parting && none_can_block(a, b, largest)).then_some(Reason::Parting)
 }
 
-/// Checks whether no pair of facets under two nodes counts, given that their boxes bound all gaps by `largest`. No gap
-/// may be positive, and none zero over a whole common shadow, which needs level facets in the plane where the boxes
-/// meet.
+/// Checks whether no pair of facets under two nodes counts, given that their boxes bound all gaps by `largest`. A pair
+/// counts if its largest gap is positive, or if its gap is zero over its whole common shadow. If `largest` is 0, a pair
+/// that counts has level facets in the plane in which the boxes touch.
 fn none_can_block(a: &Projected, b: &Projected, largest: f64) -> bool {
     largest < 0.0 || largest == 0.0 && !(a.may_be_level() && b.may_be_level())
 }
@@ -96,7 +96,7 @@ fn none_can_block(a: &Projected, b: &Projected, largest: f64) -> bool {
 /// # Errors
 /// Returns the reason if no pair of facets has a gap below `limit` that counts.
 pub(crate) fn least_gap(
-    scene: &Scene,
+    scene: &PairFrame,
     p: Profile,
     q: Profile,
     limit: f64,
@@ -113,7 +113,7 @@ pub(crate) fn least_gap(
     if p.is_apart_along_axes(q) {
         return Err(Reason::ShadowsApart);
     }
-    // Gaps that are not negative do not separate, so the largest gap is not needed.
+    // If no gap is negative, no slab can show that the pair does not count, so the largest gap is not needed.
     let least = if parting && rough < 0.0 {
         let [least, largest] = slab_gaps(scene, a, b);
         if largest < 0.0 {
@@ -130,7 +130,7 @@ pub(crate) fn least_gap(
 /// Checks independently of the search whether a reason to cut a pair of nodes is valid; `limit` as in [`least_gap`].
 /// Returns `false` for reasons that bounds cannot show.
 pub(crate) fn reason_holds(
-    scene: &Scene,
+    scene: &PairFrame,
     p: Profile,
     q: Profile,
     reason: Reason,
@@ -167,7 +167,7 @@ pub(crate) fn box_gaps(a: &Projected, b: &Projected) -> [f64; 2] {
 
 /// Returns bounds on all gaps from the slabs, the least and the largest. A plane parallel to a slab bounds the heights
 /// of its node and the height of the other node above it.
-fn slab_gaps(scene: &Scene, a: &Projected, b: &Projected) -> [f64; 2] {
+fn slab_gaps(scene: &PairFrame, a: &Projected, b: &Projected) -> [f64; 2] {
     let (mut least, mut largest) = (f64::NEG_INFINITY, f64::INFINITY);
     let mut add = |low: f64, high: f64, slope: f64| {
         let inverse = slope.recip();
@@ -186,7 +186,7 @@ fn slab_gaps(scene: &Scene, a: &Projected, b: &Projected) -> [f64; 2] {
 }
 
 /// Returns the lower bound of [`slab_gaps`].
-fn least_slab_gap(scene: &Scene, a: &Projected, b: &Projected) -> f64 {
+fn least_slab_gap(scene: &PairFrame, a: &Projected, b: &Projected) -> f64 {
     let noise = 2.0 * scene.noise;
     let mut least = f64::NEG_INFINITY;
     if a.has_heights() {
@@ -204,10 +204,11 @@ fn least_slab_gap(scene: &Scene, a: &Projected, b: &Projected) -> f64 {
 }
 
 /// Checks whether two nodes have no point in common, by their boxes, slabs, and the facets of long leaves.
-pub(crate) fn are_separated(scene: &Scene, a: &Projected, b: &Projected) -> bool {
+pub(crate) fn are_separated(scene: &PairFrame, a: &Projected, b: &Projected) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
-    // The boxes of both bodies are boxes of the query frame only if both have its axes.
-    !a.bounds.meets(&b.bounds)
+    // The boxes in the query frame are compared first, then slabs. If a body does not have the axes of the query frame,
+    // the sides of its boxes in its own frame are tested too.
+    !a.bounds.intersects(&b.bounds)
         || is_beyond_side(scene, (p, a), (q, b))
         || is_beyond_side(scene, (q, b), (p, a))
         || leaf_avoids(scene, (p, a), (q, b))
@@ -219,12 +220,12 @@ pub(crate) fn are_separated(scene: &Scene, a: &Projected, b: &Projected) -> bool
 ///
 /// The box of a long thin facet contains large parts of the other body, for example all teeth of a comb.
 fn leaf_avoids(
-    scene: &Scene,
-    (p, leaf): (&Side, &Projected),
-    (q, other): (&Side, &Projected),
+    scene: &PairFrame,
+    (p, leaf): (&PlacedBody, &Projected),
+    (q, other): (&PlacedBody, &Projected),
 ) -> bool {
     let node = &p.solid.nodes()[leaf.node as usize];
-    let length = |node: &Projected| node.local.size().max_element();
+    let length = |node: &Projected| node.local.side_lengths().max_element();
     node.is_leaf()
         && length(leaf) > MIN_LENGTH_RATIO * length(other)
         && node.facets().all(|t| facet_avoids(scene, p.corners(t), p.swell, (q, &other.local)))
@@ -238,13 +239,13 @@ fn leaf_avoids(
 /// frame, whose three coordinates have an error of one noise each, and less than one each for the product with the
 /// transpose and for the planes.
 fn facet_avoids(
-    scene: &Scene,
-    corners: [Corner; 3],
+    scene: &PairFrame,
+    corners: [PlacedVertex; 3],
     swell: f64,
-    (side, bounds): (&Side, &Aabb),
+    (side, bounds): (&PlacedBody, &Aabb),
 ) -> bool {
     let margin = 4.0 * scene.noise + swell + side.swell + side.skew_bound();
-    let (center, half) = (bounds.center(), bounds.size() * 0.5 + margin);
+    let (center, half) = (bounds.center(), bounds.side_lengths() * 0.5 + margin);
     let corners = corners.map(|c| side.view.transpose() * (c.at - side.view_offset) - center);
     let separates = |axis: DVec3| {
         let [a, b, c] = corners.map(|p| axis.dot(p));
@@ -262,9 +263,9 @@ fn facet_avoids(
 /// Checks whether a node is certainly beyond a side of another node's box or slab. Of two opposite sides only the
 /// nearer one is tested.
 pub(crate) fn is_beyond_side(
-    scene: &Scene,
-    (p, a): (&Side, &Projected),
-    (q, b): (&Side, &Projected),
+    scene: &PairFrame,
+    (p, a): (&PlacedBody, &Projected),
+    (q, b): (&PlacedBody, &Projected),
 ) -> bool {
     let middle = b.bounds.center();
     let apart = |axis: DVec3, [low, high]: [f64; 2]| {
@@ -314,7 +315,7 @@ mod tests {
             let [a, b] = [placed(&long, DVec3::ZERO), placed(&small, at)];
             let [a, b] = if is_moving { [a, b] } else { [b, a] };
             let cast = Cast::new(a, b, q * DVec3::new(0.3, 0.5, 1.0)).expect("a query");
-            let scene = cast.with_tolerance(0.0).expect("a tolerance").asked();
+            let scene = cast.with_tolerance(0.0).expect("a tolerance").query_scene();
             let [p, r] = Projected::root_bounds(&scene);
             let sides = [(&scene.moving, &p), (&scene.fixed, &r)];
             let [leaf, other] = if is_moving { sides } else { [sides[1], sides[0]] };

@@ -1,6 +1,6 @@
 //! From a pair of facets to a contact: points, normal, features, and the translation with bounds.
 //!
-//! - [`SolidContact::shrunk_distance`] is the travel of the offset bodies. The pair's gap plus its error is the upper
+//! - [`SolidContact::offset_distance`] is the travel of the offset bodies. The pair's gap plus its error is the upper
 //!   bound. The lower bound also covers all other pairs ([`Found::others`]).
 //! - [`SolidContact::translation`] is the travel at which the same two facets meet in nominal position.
 //! - Up to its `lower` the offset bodies do not overlap, which is proven, and the two facets have not met. Beyond its
@@ -15,10 +15,10 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
+use super::edge_on;
 use super::leaf::{Gap, Meeting, Opposed, listed, nearest_after};
-use super::rim;
-use super::scene::{Corner, Scene, Side};
-use super::search::{Aim, Found, exact_gap_of};
+use super::scene::{PairFrame, PlacedBody, PlacedVertex};
+use super::search::{Aim, LeastGap, exact_gap_of};
 use crate::body::Solid;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::answer::Bounded;
@@ -46,7 +46,7 @@ pub struct SolidContact {
     pub translation: Bounded,
     /// Travel of the bodies that are offset by half the tolerance each, in multiples of the direction. It exceeds the
     /// translation by about the tolerance, and equals it without a tolerance.
-    pub shrunk_distance: Bounded,
+    pub offset_distance: Bounded,
     /// Unit contact normal in the world, from the moving body to the fixed one; `normal . direction > 0`. If corners or
     /// parallel edges meet, it is one of several normals.
     pub normal: DVec3,
@@ -81,15 +81,15 @@ struct FacetPoint {
 
 impl FacetPoint {
     /// Returns the point of the nominal body in the setting frame.
-    fn nominal_point(&self, side: &Side) -> DVec3 {
+    fn nominal_point(&self, side: &PlacedBody) -> DVec3 {
         let local = self.weighted_mean(|v| side.solid.vertices()[v as usize]);
         side.matrix * local + side.offset[0]
     }
 
     /// Returns the displacement of the point by the offset, in the setting frame.
-    fn offset_displacement(&self, side: &Side) -> DVec3 {
+    fn offset_displacement(&self, side: &PlacedBody) -> DVec3 {
         let Some(shrinking) = side.shrinking else { return DVec3::ZERO };
-        side.matrix * self.weighted_mean(|v| shrinking.field[v as usize] * side.amount)
+        side.matrix * self.weighted_mean(|v| shrinking.displacements[v as usize] * side.amount)
     }
 
     fn weighted_mean(&self, value: impl Fn(u32) -> DVec3) -> DVec3 {
@@ -98,26 +98,26 @@ impl FacetPoint {
     }
 }
 
-impl Found {
+impl LeastGap {
     /// Returns the gap as a translation with its bounds; see the head of the module.
-    pub(crate) fn bounded(&self, scene: &Scene) -> Bounded {
+    pub(crate) fn bounded(&self, scene: &PairFrame) -> Bounded {
         bounded_gap(scene, (self.gap, self.error), self.others)
     }
 }
 
 /// Converts a gap with its error to a translation with bounds, given a lower bound `others` of all other gaps.
-fn bounded_gap(scene: &Scene, (gap, error): (f64, f64), others: f64) -> Bounded {
+fn bounded_gap(scene: &PairFrame, (gap, error): (f64, f64), others: f64) -> Bounded {
     let lower = others.min(gap - error) - scene.noise;
     let upper = gap + error + scene.noise;
     let [value, lower, upper] = [gap, lower, upper].map(|length| length / scene.setting.length);
     Bounded { value, lower, upper }
 }
 
-/// Builds the contact of a pair of facets that a search with this scene has found, where the offset bodies meet at
-/// `shrunk_distance`.
-pub(crate) fn contact(
-    scene: &Scene,
-    found: &Found,
+/// Builds the contact of two facets that a search in `scene` has found. `shrunk_distance` is the translation, in
+/// multiples of the direction, at which the offset bodies meet, with its bounds.
+pub(crate) fn contact_of_facets(
+    scene: &PairFrame,
+    found: &LeastGap,
     shrunk_distance: Bounded,
     steps: SolidSteps,
 ) -> SolidContact {
@@ -191,15 +191,15 @@ pub(crate) fn contact(
     } else {
         let shift = on_f.offset_displacement(moving) - on_g.offset_displacement(fixed);
         let pair = [found.moving, found.fixed];
-        true_place(&scene.shrunk(0.0, 0.0), pair, shrunk_distance, normal, shift)
+        nominal_translation(&scene.with_offsets(0.0, 0.0), pair, shrunk_distance, normal, shift)
     };
-    let named = |side: &Side, triangle, foot: &FacetPoint| {
+    let named = |side: &PlacedBody, triangle, foot: &FacetPoint| {
         let at = foot.weighted_mean(|v| side.solid.vertices()[v as usize]);
-        feature(side.solid, triangle, (at, side.matrix.transpose() * normal), scene.noise)
+        feature_at(side.solid, triangle, (at, side.matrix.transpose() * normal), scene.noise)
     };
     SolidContact {
         translation,
-        shrunk_distance,
+        offset_distance: shrunk_distance,
         normal,
         point_on_moving: on_f.nominal_point(moving) + origin,
         point_on_fixed: on_g.nominal_point(fixed) + origin,
@@ -219,8 +219,8 @@ const MIN_COSINE: f64 = 1e-3;
 /// Computes the translation at which the facets of a contact of offset bodies meet in nominal position. `bare` is the
 /// scene without offsets, and `shift` the displacement, by the offset, of the moving contact point relative to the
 /// fixed one.
-pub(crate) fn true_place(
-    bare: &Scene,
+pub(crate) fn nominal_translation(
+    bare: &PairFrame,
     pair: [u32; 2],
     shrunk: Bounded,
     normal: DVec3,
@@ -235,7 +235,7 @@ pub(crate) fn true_place(
     if bare.has_min_gap() {
         return gap.map_or(shrunk, known);
     }
-    if let Some(gap) = gap.or_else(|| rim::least_gap_of(bare, &Gap::counts, pair)) {
+    if let Some(gap) = gap.or_else(|| edge_on::least_gap_of(bare, &Gap::counts, pair)) {
         return known(gap);
     }
     let slope = normal.dot(bare.setting.direction);
@@ -270,10 +270,11 @@ const MIN_WIDTH: f64 = 64.0;
 /// Returns a lower bound of the translation at which two triangles meet, whichever way they face; infinity if they
 /// never meet.
 ///
-/// The direction enters the convex hull of the differences of their corners at the lowest point above the origin. This
-/// point lies in one of the triangles of three differences, or in one of its sides if its shadow is too narrow.
-fn first_meeting_bound(bare: &Scene, pair: [u32; 2]) -> f64 {
-    let corners = |side: &Side, t: u32| side.corners(t as usize).map(|corner| corner.at);
+/// The line through the origin along the direction meets the convex hull of the differences of their corners first at
+/// its lowest point in the hull. This point lies in one of the triangles of three differences, or in one of its sides
+/// if its shadow is too narrow.
+fn first_meeting_bound(bare: &PairFrame, pair: [u32; 2]) -> f64 {
+    let corners = |side: &PlacedBody, t: u32| side.corners(t as usize).map(|corner| corner.at);
     let (f, g) = (corners(&bare.moving, pair[0]), corners(&bare.fixed, pair[1]));
     let difference = |k: usize| g[k % 3] - f[k / 3];
     let (mut least, off) = (f64::INFINITY, DIFFERENCE_ERROR * bare.noise);
@@ -346,14 +347,14 @@ fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 struct ListedTriangle {
     triangle: u32,
     vertices: [u32; 3],
-    corners: [Corner; 3],
+    corners: [PlacedVertex; 3],
     places: [DVec3; 3],
     /// Orientation of the shadow in the original order of the corners.
     turn: Ordering,
 }
 
 impl ListedTriangle {
-    fn new(scene: &Scene, side: &Side, triangle: u32) -> Self {
+    fn new(scene: &PairFrame, side: &PlacedBody, triangle: u32) -> Self {
         let (corners, turn) = listed(scene, side, triangle as usize);
         let mut vertices = side.solid.triangles()[triangle as usize];
         if turn == Ordering::Less {
@@ -424,11 +425,11 @@ fn crossing_positions(a: [DVec3; 2], b: [DVec3; 2]) -> (f64, f64) {
 
 /// Returns the feature of a solid at a point of a triangle with the given normal, both in the body frame. The slack is
 /// the precision of the body's coordinates plus rounding.
-pub(crate) fn feature(
+pub(crate) fn feature_at(
     solid: &Solid,
     triangle: u32,
     (at, normal): (DVec3, DVec3),
     noise: f64,
 ) -> Feature {
-    solid.feature_at(triangle, at, normal, 2.0 * solid.precision() + noise)
+    solid.feature_at(triangle, at, normal, 2.0 * solid.coordinate_precision() + noise)
 }

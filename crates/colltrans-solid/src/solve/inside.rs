@@ -13,11 +13,11 @@ use glam::DVec3;
 
 use super::line;
 use super::projected::Projected;
-use super::scene::{Corner, ExactPoint, Scene, Side, place_exactly};
+use super::scene::{ExactPoint, PairFrame, PlacedBody, PlacedVertex, place_exactly};
 use super::triangle::{Triangle, lies_on};
-use crate::body::edges::NONE;
+use crate::body::edges::NO_NEIGHBOUR;
 use colltrans_convex::body::Aabb;
-use colltrans_kernel::fine::Fine;
+use colltrans_kernel::extended::ExtendedPoint;
 use colltrans_kernel::integer::Integer;
 
 /// Maximum number of triangles of a shell that are tried for a point off the other surface. A shell inside touches the
@@ -29,14 +29,14 @@ pub(crate) const WEIGHTS: [[f64; 3]; 4] =
     [[0.5, 0.25, 0.25], [0.25, 0.5, 0.25], [0.25, 0.25, 0.5], [0.0, 0.5, 0.5]];
 
 /// Finds a shell of one body that lies inside the other, and returns a triangle of it; `None` if there is none.
-pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
+pub(crate) fn shell_inside(scene: &PairFrame, moving: bool) -> Option<u32> {
     let (own, other) = (scene.side(moving), scene.side(!moving));
     if !other.solid.has_interior() {
         return None;
     }
     let room = Projected::new(scene, other, 0);
-    for span in own.solid.spans() {
-        let (middle, half) = (span.bounds.center(), span.bounds.size() * 0.5);
+    for span in own.solid.shell_bounds() {
+        let (middle, half) = (span.bounds.center(), span.bounds.side_lengths() * 0.5);
         let at = own.view * middle + own.view_offset;
         let rows = own.view.transpose();
         let swell = own.max_displacement();
@@ -49,9 +49,9 @@ pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
         // A shell that extends beyond the other body's box is not inside it. The offset may shorten its extent by
         // `swell`.
         let around = grown(swell);
-        let within = room.bounds.grown(16.0 * scene.noise).holds(&grown(-swell));
+        let within = room.bounds.expanded(16.0 * scene.noise).contains_box(&grown(-swell));
         // Boxes that are not aligned are loose. Then every shell whose box meets the other one is tested.
-        let meets = room.bounds.meets(&around);
+        let meets = room.bounds.intersects(&around);
         let aligned = own.aligned == [true; 3] && other.aligned == [true; 3];
         if meets && (within || !aligned) && is_shell_inside(scene, own, other, span.triangle) {
             return Some(span.triangle);
@@ -61,11 +61,11 @@ pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
 }
 
 /// Checks whether the shell that contains this triangle of a body is inside the other body.
-pub(crate) fn is_inside(scene: &Scene, moving: bool, triangle: u32) -> bool {
+pub(crate) fn is_inside(scene: &PairFrame, moving: bool, triangle: u32) -> bool {
     is_shell_inside(scene, scene.side(moving), scene.side(!moving), triangle)
 }
 
-fn is_shell_inside(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bool {
+fn is_shell_inside(scene: &PairFrame, own: &PlacedBody, other: &PlacedBody, triangle: u32) -> bool {
     if own.solid.is_without_area(triangle as usize) {
         let [p, q, _] = own.corners(triangle as usize);
         return [p, q].iter().any(|end| match winding_number(scene, other, end) {
@@ -91,7 +91,7 @@ fn is_shell_inside(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bo
             }
         }
         for &n in &own.solid.neighbours()[t as usize] {
-            if n != NONE && count < MOST_TRIANGLES && !seen[..count].contains(&n) {
+            if n != NO_NEIGHBOUR && count < MOST_TRIANGLES && !seen[..count].contains(&n) {
                 seen[count] = n;
                 count += 1;
             }
@@ -108,7 +108,7 @@ pub(crate) struct FacetMean {
 }
 
 impl FacetMean {
-    pub(crate) fn new(scene: &Scene, corners: [Corner; 3], weights: [f64; 3]) -> Self {
+    pub(crate) fn new(scene: &PairFrame, corners: [PlacedVertex; 3], weights: [f64; 3]) -> Self {
         let terms = [0, 1, 2].map(|k| (weights[k], corners[k].local));
         let local: DVec3 = terms.iter().map(|(w, p)| *p * *w).sum();
         let side = scene.side(corners[0].moving);
@@ -117,7 +117,7 @@ impl FacetMean {
 }
 
 impl ExactPoint for FacetMean {
-    fn at(&self) -> DVec3 {
+    fn query_position(&self) -> DVec3 {
         self.at
     }
 
@@ -125,44 +125,49 @@ impl ExactPoint for FacetMean {
         false
     }
 
-    fn world(&self, _: &Scene) -> Option<DVec3> {
+    fn exact_position(&self, _: &PairFrame) -> Option<DVec3> {
         None
     }
 
-    fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3] {
+    fn integer_position<const N: usize>(&self, scene: &PairFrame) -> [Integer<N>; 3] {
         place_exactly(scene.side(self.moving), &self.terms)
     }
 
-    fn fine(&self, scene: &Scene) -> Fine {
+    fn double_double_position(&self, scene: &PairFrame) -> ExtendedPoint {
         let side = scene.side(self.moving);
-        Fine::placed(&side.matrix, side.offset, &self.terms)
+        ExtendedPoint::from_products(&side.matrix, side.offset, &self.terms)
     }
 }
 
-/// Computes the winding number of a point: the number of closed shells of a solid that contain it. `None` if the point
-/// lies on a closed shell.
-fn winding_number(scene: &Scene, side: &Side, point: &impl ExactPoint) -> Option<i32> {
+/// Computes the winding number of a point: the number of closed shells of a solid around the point, where the wall of a
+/// cavity counts -1. `None` if the point lies on a closed shell.
+fn winding_number(scene: &PairFrame, side: &PlacedBody, point: &impl ExactPoint) -> Option<i32> {
     winding_below(scene, side, point, 0)
 }
 
 /// Computes the contribution of one node to the winding number; `None` if the point lies on one of its facets.
-fn winding_below(scene: &Scene, side: &Side, point: &impl ExactPoint, at: u32) -> Option<i32> {
-    let (p, noise) = (point.at(), 4.0 * scene.noise);
+fn winding_below(
+    scene: &PairFrame,
+    side: &PlacedBody,
+    point: &impl ExactPoint,
+    at: u32,
+) -> Option<i32> {
+    let (p, noise) = (point.query_position(), 4.0 * scene.noise);
     let node = &side.solid.nodes()[at as usize];
     let projected = Projected::new(scene, side, at as usize);
-    let Aabb { low, high } = projected.bounds.grown(noise);
+    let Aabb { low, high } = projected.bounds.expanded(noise);
     if (0..2).any(|k| p[k] < low[k] || p[k] > high[k]) || p.z > high.z {
         return Some(0);
     }
     if !node.is_leaf() {
-        let [first, second] = node.children(at);
+        let [first, second] = node.child_positions(at);
         return Some(
             winding_below(scene, side, point, first)? + winding_below(scene, side, point, second)?,
         );
     }
     let axes = lateral_axes(scene);
     let mut winding = 0;
-    // Sheets enclose no volume.
+    // Open shells enclose no volume.
     for t in node.facets().filter(|&t| !side.solid.is_open(t)) {
         if lies_on(scene, point, &Triangle::new(side, t)) {
             return None;
@@ -173,15 +178,15 @@ fn winding_below(scene: &Scene, side: &Side, point: &impl ExactPoint, at: u32) -
 }
 
 /// Returns the two axes of the world other than the one with the largest component of the direction.
-fn lateral_axes(scene: &Scene) -> [usize; 2] {
+fn lateral_axes(scene: &PairFrame) -> [usize; 2] {
     let main = scene.setting.direction.abs().max_position();
     [(main + 1) % 3, (main + 2) % 3]
 }
 
 /// Returns 1 if the ray from the point leaves through the triangle, -1 if it enters, 0 if it misses the triangle.
 fn crossing_sign(
-    scene: &Scene,
-    [a, b, c]: [Corner; 3],
+    scene: &PairFrame,
+    [a, b, c]: [PlacedVertex; 3],
     point: &impl ExactPoint,
     axes: [usize; 2],
 ) -> i32 {
@@ -189,14 +194,14 @@ fn crossing_sign(
     if facing == Ordering::Equal {
         return 0;
     }
-    let beside = |u: &Corner, v: &Corner| {
+    let beside = |u: &PlacedVertex, v: &PlacedVertex| {
         scene
             .turn(u, v, point)
             .then_with(|| scene.drift_sign(axes[0], u, v))
             .then_with(|| scene.drift_sign(axes[1], u, v))
     };
     let passes = beside(&a, &b) == facing && beside(&b, &c) == facing && beside(&c, &a) == facing;
-    if !passes || scene.outside(&a, &b, &c, point) != facing.reverse() {
+    if !passes || scene.side_of_plane(&a, &b, &c, point) != facing.reverse() {
         return 0;
     }
     if facing == Ordering::Greater { 1 } else { -1 }

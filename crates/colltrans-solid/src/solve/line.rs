@@ -18,18 +18,18 @@ use glam::DVec3;
 
 use super::fan::Fan;
 use super::projected::Projected;
-use super::scene::{Corner, ExactPoint, Scene, Side};
+use super::scene::{ExactPoint, PairFrame, PlacedBody, PlacedVertex};
 use super::triangle::Triangle;
 use crate::body::Solid;
-use crate::body::edges::NONE;
+use crate::body::edges::NO_NEIGHBOUR;
 use colltrans_convex::body::Aabb;
-use colltrans_kernel::integer::{Integer, PRODUCT_LIMBS, SMALL, determinant, difference};
+use colltrans_kernel::integer::{Integer, PRODUCT_LIMBS, SMALL_LIMBS, determinant, difference};
 
 /// A line with a direction `u`.
 #[derive(Clone, Copy)]
 pub(super) struct Line<'c> {
     /// A point `p` of the line.
-    pub(super) from: &'c Corner,
+    pub(super) from: &'c PlacedVertex,
     pub(super) way: LineDirection<'c>,
 }
 
@@ -39,38 +39,43 @@ pub(super) enum LineDirection<'c> {
     /// The direction of the query, or its opposite.
     Query { forward: bool },
     /// The direction to another point.
-    To(&'c Corner),
+    To(&'c PlacedVertex),
 }
 
 impl Line<'_> {
     /// Returns the sign of `det[u, a - p, b - p]`: the side of the line on which the edge passes.
-    pub(super) fn turn(&self, scene: &Scene, a: &impl ExactPoint, b: &impl ExactPoint) -> Ordering {
+    pub(super) fn turn(
+        &self,
+        scene: &PairFrame,
+        a: &impl ExactPoint,
+        b: &impl ExactPoint,
+    ) -> Ordering {
         match self.way {
             LineDirection::Query { forward: true } => scene.turn(self.from, a, b),
             LineDirection::Query { forward: false } => scene.turn(self.from, a, b).reverse(),
-            LineDirection::To(q) => scene.outside(self.from, q, a, b),
+            LineDirection::To(q) => scene.side_of_plane(self.from, q, a, b),
         }
     }
 
     /// Returns the sign of `det[u, a - p, e]` for the unit vector `e` of an axis of the world.
-    pub(super) fn turn_about(&self, scene: &Scene, axis: usize, a: &Corner) -> Ordering {
+    pub(super) fn turn_about(&self, scene: &PairFrame, axis: usize, a: &PlacedVertex) -> Ordering {
         match self.way {
             LineDirection::Query { forward: true } => scene.drift_sign(axis, self.from, a),
             LineDirection::Query { forward: false } => {
                 scene.drift_sign(axis, self.from, a).reverse()
             }
-            LineDirection::To(q) => scene.turn_about(axis, self.from, q, a),
+            LineDirection::To(q) => scene.projected_orientation(axis, self.from, q, a),
         }
     }
 
     /// Checks whether the line may meet a box in the query frame.
-    fn may_meet(&self, scene: &Scene, bounds: &Aabb) -> bool {
+    fn may_meet(&self, scene: &PairFrame, bounds: &Aabb) -> bool {
         let (way, is_exact) = match self.way {
             LineDirection::Query { .. } => (DVec3::Z, true),
             LineDirection::To(q) => (q.at - self.from.at, false),
         };
         let noise = 4.0 * scene.noise;
-        let (middle, half) = (bounds.center() - self.from.at, bounds.size() * 0.5 + noise);
+        let (middle, half) = (bounds.center() - self.from.at, bounds.side_lengths() * 0.5 + noise);
         (0..3).all(|k| {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             let off = (middle[i] * way[j] - middle[j] * way[i]).abs();
@@ -81,44 +86,44 @@ impl Line<'_> {
     }
 }
 
-/// Checks whether a line enters a body where it meets a facet of a closed shell that faces it, edges and corners
-/// included.
+/// Checks whether a line enters a solid at the point where it meets a facet, edges and corners included. The facet
+/// belongs to a closed shell and faces the line.
 ///
-/// It does if the point past the place is inside. With `through`, the line passes from one side of the facet's plane to
-/// the other. Then it also enters within a face that no facet of another plane touches there, because faces block
-/// however thin the wall behind them is.
+/// The line enters if the point just past this place is inside the solid. With `through`, the line passes from one side
+/// of the facet's plane to the other. Then it also enters within a face if no facet of another plane contains the
+/// point, because faces block however thin the wall behind them is.
 pub(super) fn enters_body(
-    scene: &Scene,
+    scene: &PairFrame,
     line: &Line,
-    side: &Side,
+    side: &PlacedBody,
     triangle: u32,
     through: bool,
 ) -> bool {
     let facet = Triangle::new(side, triangle as usize);
     if through && is_within_a_face(scene, line, &facet) {
-        let is_touched = is_touched::<SMALL>(scene, line, &facet)
+        let is_touched = is_touched::<SMALL_LIMBS>(scene, line, &facet)
             .or_else(|| is_touched::<PRODUCT_LIMBS>(scene, line, &facet));
         if is_touched == Some(false) {
             return true;
         }
     }
-    is_inside_past::<SMALL>(scene, line, &facet)
+    is_inside_past::<SMALL_LIMBS>(scene, line, &facet)
         .or_else(|| is_inside_past::<PRODUCT_LIMBS>(scene, line, &facet))
         .unwrap_or_default()
 }
 
 /// Checks whether a facet of another plane contains the point in which a line meets a facet; `None` if a number does
 /// not fit.
-fn is_touched<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> Option<bool> {
+fn is_touched<const N: usize>(scene: &PairFrame, line: &Line, facet: &Triangle) -> Option<bool> {
     let past = PointOnLine::<N>::past_facet(scene, line, facet.side, &facet.corners)?;
     let ray = PointOnLine { is_past: false, ..past };
-    let bounds = facet.bounds.grown(4.0 * scene.noise);
+    let bounds = facet.bounds.expanded(4.0 * scene.noise);
     let [a, b, c] = &facet.corners;
     let mut found = false;
     ray.each_facet(
-        |node| node.meets(&bounds),
+        |node| node.intersects(&bounds),
         |t, corners| {
-            let is_in_plane = || corners.iter().all(|v| scene.outside(a, b, c, v) == Equal);
+            let is_in_plane = || corners.iter().all(|v| scene.side_of_plane(a, b, c, v) == Equal);
             found |= t != facet.index
                 && matches!(ray.facet_relation(corners)?, Relation::Holds)
                 && !is_in_plane();
@@ -130,37 +135,45 @@ fn is_touched<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> O
 
 /// Checks whether the point past the place where a line meets the plane of a facet is inside the body; `None` if a
 /// number does not fit.
-fn is_inside_past<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> Option<bool> {
+fn is_inside_past<const N: usize>(
+    scene: &PairFrame,
+    line: &Line,
+    facet: &Triangle,
+) -> Option<bool> {
     PointOnLine::<N>::past_facet(scene, line, facet.side, &facet.corners)?.is_inside()
 }
 
-/// Checks whether a point of a surface is inside another piece of the body.
-pub(super) fn is_inside_other_piece(scene: &Scene, side: &Side, point: &Corner) -> bool {
+/// Checks whether a point on the surface of a solid is inside another body of the solid.
+pub(super) fn is_inside_other_piece(
+    scene: &PairFrame,
+    side: &PlacedBody,
+    point: &PlacedVertex,
+) -> bool {
     let line = Line { from: point, way: LineDirection::Query { forward: true } };
     let is_inside_one = || {
-        PointOnLine::<SMALL>::from_start(scene, &line, side)
+        PointOnLine::<SMALL_LIMBS>::from_start(scene, &line, side)
             .is_inside()
             .or_else(|| PointOnLine::<PRODUCT_LIMBS>::from_start(scene, &line, side).is_inside())
     };
-    side.solid.spans().len() > 1 && is_inside_one().unwrap_or_default()
+    side.solid.shell_bounds().len() > 1 && is_inside_one().unwrap_or_default()
 }
 
 /// Checks whether a line meets a facet within its face, where the face neither bends nor ends.
-fn is_within_a_face(scene: &Scene, line: &Line, facet: &Triangle) -> bool {
+fn is_within_a_face(scene: &PairFrame, line: &Line, facet: &Triangle) -> bool {
     let [a, b, c] = &facet.corners;
     let is_on =
         |k: &usize| line.turn(scene, &facet.corners[*k], &facet.corners[(k + 1) % 3]) == Equal;
     let on: Vec<usize> = (0..3).filter(is_on).collect();
     let (axis, facing) = facet.open_axis(scene);
-    let continues = |[x, y, z]: [&Corner; 3]| {
-        [x, y, z].into_iter().all(|v| scene.outside(a, b, c, v) == Equal)
-            && scene.turn_about(axis, x, y, z) == facing
+    let continues = |[x, y, z]: [&PlacedVertex; 3]| {
+        [x, y, z].into_iter().all(|v| scene.side_of_plane(a, b, c, v) == Equal)
+            && scene.projected_orientation(axis, x, y, z) == facing
     };
     match on[..] {
         [] => true,
         [k] => {
             let n = facet.side.solid.neighbours()[facet.index][k];
-            n != NONE && continues(facet.side.corners(n as usize).each_ref())
+            n != NO_NEIGHBOUR && continues(facet.side.corners(n as usize).each_ref())
         }
         [j, k, ..] => {
             let shared = if k == j + 1 { k } else { j };
@@ -205,9 +218,9 @@ enum Relation {
 
 /// A point on a line, in integers with `N` limbs. Results that do not fit are `None`.
 struct PointOnLine<'r, 'a, const N: usize> {
-    scene: &'r Scene<'a>,
+    scene: &'r PairFrame<'a>,
     line: &'r Line<'r>,
-    side: &'r Side<'a>,
+    side: &'r PlacedBody<'a>,
     from: [Integer<N>; 3],
     way: [Integer<N>; 3],
     /// The axis of the world with the largest component of the direction.
@@ -219,20 +232,20 @@ struct PointOnLine<'r, 'a, const N: usize> {
 
 impl<'r, 'a, const N: usize> PointOnLine<'r, 'a, N> {
     /// Builds the point at the start `p` of a line.
-    fn from_start(scene: &'r Scene<'a>, line: &'r Line<'r>, side: &'r Side<'a>) -> Self {
-        let from = line.from.wide(scene);
+    fn from_start(scene: &'r PairFrame<'a>, line: &'r Line<'r>, side: &'r PlacedBody<'a>) -> Self {
+        let from = line.from.integer_position(scene);
         let direction = scene.setting.direction;
         let (way, rough) = match line.way {
             LineDirection::Query { forward } => {
                 let direction = if forward { direction } else { -direction };
-                (direction.to_array().map(Integer::number), direction)
+                (direction.to_array().map(Integer::exact_number), direction)
             }
             LineDirection::To(q) => {
                 let rough = scene.frame.transpose() * (q.at - line.from.at);
-                (difference(&q.wide(scene), &from), rough)
+                (difference(&q.integer_position(scene), &from), rough)
             }
         };
-        let place = Fraction { over: Integer::ZERO, under: Integer::number(1.0) };
+        let place = Fraction { over: Integer::ZERO, under: Integer::exact_number(1.0) };
         let is_none = |k: usize| way[k].sign() == Some(Equal);
         let longest = rough.abs().max_position();
         let main =
@@ -242,10 +255,10 @@ impl<'r, 'a, const N: usize> PointOnLine<'r, 'a, N> {
 
     /// Builds the point past the place where a line meets the plane of a facet; `None` if a number does not fit.
     fn past_facet(
-        scene: &'r Scene<'a>,
+        scene: &'r PairFrame<'a>,
         line: &'r Line<'r>,
-        side: &'r Side<'a>,
-        facet: &[Corner; 3],
+        side: &'r PlacedBody<'a>,
+        facet: &[PlacedVertex; 3],
     ) -> Option<Self> {
         let mut ray = Self::from_start(scene, line, side);
         let place = ray.place_on(&ray.relative_corners(facet))?;
@@ -254,8 +267,8 @@ impl<'r, 'a, const N: usize> PointOnLine<'r, 'a, N> {
     }
 
     /// Returns the corners of a facet relative to the start of the line.
-    fn relative_corners(&self, corners: &[Corner; 3]) -> [[Integer<N>; 3]; 3] {
-        corners.each_ref().map(|c| difference(&c.wide(self.scene), &self.from))
+    fn relative_corners(&self, corners: &[PlacedVertex; 3]) -> [[Integer<N>; 3]; 3] {
+        corners.each_ref().map(|c| difference(&c.integer_position(self.scene), &self.from))
     }
 
     /// Returns the place where the line meets the plane of a facet that is not parallel to it; `None` if a number does
@@ -276,7 +289,7 @@ impl<'r, 'a, const N: usize> PointOnLine<'r, 'a, N> {
         [(self.main + 1) % 3, (self.main + 2) % 3]
     }
 
-    fn facet_relation(&self, corners: &[Corner; 3]) -> Option<Relation> {
+    fn facet_relation(&self, corners: &[PlacedVertex; 3]) -> Option<Relation> {
         let turn = |k: usize| self.line.turn(self.scene, &corners[k], &corners[(k + 1) % 3]);
         let turns = [turn(0), turn(1), turn(2)];
         if turns.contains(&Greater) && turns.contains(&Less) {
@@ -364,7 +377,7 @@ impl<'r, 'a, const N: usize> PointOnLine<'r, 'a, N> {
     fn each_facet(
         &self,
         admits: impl Fn(&Aabb) -> bool,
-        mut take: impl FnMut(usize, &[Corner; 3]) -> Option<()>,
+        mut take: impl FnMut(usize, &[PlacedVertex; 3]) -> Option<()>,
     ) -> Option<()> {
         let solid = self.side.solid;
         let mut open = vec![0];
@@ -375,7 +388,7 @@ impl<'r, 'a, const N: usize> PointOnLine<'r, 'a, N> {
                 continue;
             }
             if !node.is_leaf() {
-                open.extend(node.children(at));
+                open.extend(node.child_positions(at));
                 continue;
             }
             for t in node.facets().filter(|&t| !solid.is_open(t)) {
@@ -391,7 +404,7 @@ fn is_around(solid: &Solid, ahead: &[(usize, i32)], on: &[usize]) -> bool {
     if on.is_empty() {
         return ahead.iter().map(|(_, count)| count).sum::<i32>() > 0;
     }
-    if solid.spans().len() == 1 {
+    if solid.shell_bounds().len() == 1 {
         return false;
     }
     let bodies = solid.body_numbers();

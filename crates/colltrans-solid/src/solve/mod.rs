@@ -13,6 +13,7 @@
 
 pub(crate) mod bound;
 pub mod contact;
+pub(crate) mod edge_on;
 mod fan;
 mod inside;
 pub(crate) mod leaf;
@@ -21,7 +22,6 @@ pub mod nearest;
 pub mod overlap;
 pub(crate) mod parted;
 pub mod projected;
-pub(crate) mod rim;
 pub mod scene;
 pub mod search;
 pub(crate) mod separate;

@@ -18,13 +18,13 @@ use super::bound::{Reason, are_separated, dismissal_reason, is_beyond_side};
 use super::inside;
 use super::leaf::FacetDifference;
 use super::projected::Projected;
-use super::scene::{Corner, Scene, Side};
+use super::scene::{PairFrame, PlacedBody, PlacedVertex};
 use super::thin;
 use super::triangle::Triangle;
-use crate::body::tree::{LEAF, Node};
-use crate::body::wedge::{Axis, Ray, Wedge};
+use crate::body::tree::{MAX_LEAF_FACETS, Node};
+use crate::body::wedge::{AxisSigns, Ray, Wedge};
 use crate::solve::steps::SolidSteps;
-use colltrans_kernel::descent::{node_to_split, replaced};
+use colltrans_kernel::descent::{node_to_split, pair_with_node};
 
 /// The place of an overlap, as positions in [`Solid::triangles`](crate::Solid::triangles).
 /// [`Solid::facet_indices`](crate::Solid::facet_indices) maps them to facets of the input.
@@ -46,13 +46,16 @@ pub enum Overlap {
 /// Finds a place where the interiors intersect or an open shell passes through the other body; `None` if there is no
 /// such place.
 #[inline]
-pub fn find(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
-    find_with(scene, &mut |entry| steps.count_pair(entry))
+pub fn find_overlap(scene: &PairFrame, steps: &mut SolidSteps) -> Option<Overlap> {
+    find_overlap_with(scene, &mut |entry| steps.count_pair(entry))
 }
 
 /// Finds an overlap like [`find`]. Calls `cut` for every pair of nodes in the order of the descent, with `None` if the
 /// pair was split, otherwise with the reason.
-pub(crate) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> Option<Overlap> {
+pub(crate) fn find_overlap_with(
+    scene: &PairFrame,
+    cut: &mut impl FnMut(Option<Reason>),
+) -> Option<Overlap> {
     let [a, b] = Projected::root_bounds(scene);
     if never_overlap(scene, &a, &b) {
         cut(Some(Reason::Disjoint));
@@ -63,7 +66,7 @@ pub(crate) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> 
 }
 
 /// Checks whether boxes and slabs alone show that the interiors of two whole bodies are disjoint.
-pub(crate) fn never_overlap(scene: &Scene, a: &Projected, b: &Projected) -> bool {
+pub(crate) fn never_overlap(scene: &PairFrame, a: &Projected, b: &Projected) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
     is_beyond_side(scene, (p, a), (q, b))
         || is_beyond_side(scene, (q, b), (p, a))
@@ -71,23 +74,23 @@ pub(crate) fn never_overlap(scene: &Scene, a: &Projected, b: &Projected) -> bool
         || b.bounds.low.cmpge(a.bounds.high).any()
 }
 
-/// Checks whether the bounding boxes show that two bodies do not overlap and that nothing blocks the moving one before
-/// `limit`.
-pub(crate) fn boxes_exclude_contact(scene: &Scene, limit: f64) -> bool {
+/// Checks whether the bounds of the two whole bodies (boxes, slabs and facing directions) show that the bodies do not
+/// overlap and that nothing blocks the moving one before `limit`, a length.
+pub(crate) fn boxes_exclude_contact(scene: &PairFrame, limit: f64) -> bool {
     let [a, b] = Projected::root_bounds(scene);
     never_overlap(scene, &a, &b) && dismissal_reason(&a, &b, limit, true).is_some()
 }
 
 /// Finds a shell of one body that lies inside the other, for bodies whose surfaces do not cross; `None` if there is
 /// none.
-pub(crate) fn nested_shell(scene: &Scene) -> Option<Overlap> {
+pub(crate) fn nested_shell(scene: &PairFrame) -> Option<Overlap> {
     let moving = inside::shell_inside(scene, true).map(Overlap::MovingInside);
     moving.or_else(|| inside::shell_inside(scene, false).map(Overlap::FixedInside))
 }
 
 /// Checks whether the bodies overlap at the given place.
-pub(crate) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
-    let count = |side: &Side| side.solid.triangles().len() as u32;
+pub(crate) fn is_overlap(scene: &PairFrame, overlap: Overlap) -> bool {
+    let count = |side: &PlacedBody| side.solid.triangles().len() as u32;
     match overlap {
         Overlap::Facets(f, g) => {
             f < count(&scene.moving) && g < count(&scene.fixed) && {
@@ -105,9 +108,9 @@ pub(crate) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
 /// from the moving body to the fixed one. Candidates are the normals of both facets and the cross products of two
 /// edges. The value is rounded, and negative if the facets overlap along all candidates. `None` for nested shells, or
 /// if all candidates vanish.
-pub(crate) fn widest_separation(scene: &Scene, overlap: Overlap) -> Option<(f64, DVec3)> {
+pub(crate) fn widest_separation(scene: &PairFrame, overlap: Overlap) -> Option<(f64, DVec3)> {
     let Overlap::Facets(f, g) = overlap else { return None };
-    let corners = |side: &Side, t: u32| side.corners(t as usize).map(|c| c.at);
+    let corners = |side: &PlacedBody, t: u32| side.corners(t as usize).map(|c| c.at);
     let (f, g) = (corners(&scene.moving, f), corners(&scene.fixed, g));
     let edges = |[a, b, c]: [DVec3; 3]| [b - a, c - b, a - c];
     let (e, h) = (edges(f), edges(g));
@@ -129,10 +132,10 @@ pub(crate) fn widest_separation(scene: &Scene, overlap: Overlap) -> Option<(f64,
     widest.map(|(gap, normal)| (gap, scene.frame.transpose() * normal))
 }
 
-/// Checks whether the solids, as closed sets, have a common point at the given place: two facets that share a point, or
-/// a shell that is inside.
-pub(crate) fn is_touch(scene: &Scene, place: Overlap) -> bool {
-    let count = |side: &Side| side.solid.triangles().len() as u32;
+/// Checks whether the solids, as closed sets, have a common point at the given place. The two facets of the place must
+/// share a point, or its shell must be inside the other body.
+pub(crate) fn is_touch(scene: &PairFrame, place: Overlap) -> bool {
+    let count = |side: &PlacedBody| side.solid.triangles().len() as u32;
     match place {
         Overlap::Facets(f, g) => {
             f < count(&scene.moving) && g < count(&scene.fixed) && {
@@ -145,12 +148,12 @@ pub(crate) fn is_touch(scene: &Scene, place: Overlap) -> bool {
 }
 
 /// Checks whether no two facets of two leaves show an overlap.
-pub(crate) fn leaves_apart(scene: &Scene, a: &Node, b: &Node) -> bool {
+pub(crate) fn leaves_apart(scene: &PairFrame, a: &Node, b: &Node) -> bool {
     search_leaves(scene, a, b, PairTest::overlap_test(scene)).is_none()
 }
 
 /// Finds a place where the solids, as closed sets, have a common point; `None` if there is no such place.
-pub(crate) fn find_contact(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
+pub(crate) fn find_contact(scene: &PairFrame, steps: &mut SolidSteps) -> Option<Overlap> {
     let [a, b] = Projected::root_bounds(scene);
     let mut count = |entry| steps.count_pair(entry);
     if are_separated(scene, &a, &b) {
@@ -172,7 +175,7 @@ impl SolidSteps {
 /// A test of two triangles, and whether nodes that lie face to face can satisfy it.
 #[derive(Clone, Copy)]
 struct PairTest {
-    holds: fn(&Scene, &Triangle, &Triangle) -> bool,
+    holds: fn(&PairFrame, &Triangle, &Triangle) -> bool,
     faces: bool,
 }
 
@@ -183,12 +186,12 @@ impl PairTest {
     const AS_NEAR: Self = Self { holds: are_as_near, faces: true };
 
     /// Returns the test of an overlap, or of a distance below the minimum gap if there is one.
-    fn overlap_test(scene: &Scene) -> Self {
+    fn overlap_test(scene: &PairFrame) -> Self {
         if scene.has_min_gap() { Self::NEARER } else { Self::OVERLAP }
     }
 
     /// Returns the test of contact, or of a distance up to the minimum gap if there is one.
-    fn contact_test(scene: &Scene) -> Self {
+    fn contact_test(scene: &PairFrame) -> Self {
         if scene.has_min_gap() { Self::AS_NEAR } else { Self::TOUCH }
     }
 
@@ -196,7 +199,7 @@ impl PairTest {
     ///
     /// Facets of one plane that face each other show no overlap. At their edges one half-space of material touches
     /// another. Otherwise the second facet of the wedge is in another node and shows the overlap.
-    fn dismissal_reason(self, scene: &Scene, a: &Projected, b: &Projected) -> Option<Reason> {
+    fn dismissal_reason(self, scene: &PairFrame, a: &Projected, b: &Projected) -> Option<Reason> {
         if are_separated(scene, a, b) {
             return Some(Reason::Disjoint);
         }
@@ -206,7 +209,7 @@ impl PairTest {
 
 /// Finds a pair of triangles that satisfies `test`, among all pairs whose nodes are not certainly separated.
 fn search_pairs(
-    scene: &Scene,
+    scene: &PairFrame,
     nodes: [usize; 2],
     a: &Projected,
     b: &Projected,
@@ -215,20 +218,20 @@ fn search_pairs(
 ) -> Option<(u32, u32)> {
     let (m, n) = (&scene.moving.solid.nodes()[nodes[0]], &scene.fixed.solid.nodes()[nodes[1]]);
     let are_leaves = [m.is_leaf(), n.is_leaf()];
-    let Some(which) = node_to_split(are_leaves, |k| [m, n][k].size()) else {
+    let Some(which) = node_to_split(are_leaves, |k| [m, n][k].squared_diagonal()) else {
         cut(Some(Reason::Examined));
         return search_leaves(scene, m, n, test);
     };
     cut(None);
-    for part in [m, n][which].children(nodes[which] as u32) {
+    for part in [m, n][which].child_positions(nodes[which] as u32) {
         let part = part as usize;
         let projected = Projected::new(scene, scene.side(which == 0), part);
-        let [p, q] = replaced([a, b], which, &projected);
+        let [p, q] = pair_with_node([a, b], which, &projected);
         if let Some(reason) = test.dismissal_reason(scene, p, q) {
             cut(Some(reason));
             continue;
         }
-        let found = search_pairs(scene, replaced(nodes, which, part), p, q, test, cut);
+        let found = search_pairs(scene, pair_with_node(nodes, which, part), p, q, test, cut);
         if found.is_some() {
             return found;
         }
@@ -236,9 +239,9 @@ fn search_pairs(
     None
 }
 
-fn search_leaves(scene: &Scene, a: &Node, b: &Node, test: PairTest) -> Option<(u32, u32)> {
+fn search_leaves(scene: &PairFrame, a: &Node, b: &Node, test: PairTest) -> Option<(u32, u32)> {
     let mut facets = a.facets().map(|s| Triangle::new(&scene.moving, s));
-    let of_moving: [Option<Triangle>; LEAF] = std::array::from_fn(|_| facets.next());
+    let of_moving: [Option<Triangle>; MAX_LEAF_FACETS] = std::array::from_fn(|_| facets.next());
     for t in b.facets() {
         let g = Triangle::new(&scene.fixed, t);
         for f in of_moving.iter().flatten() {
@@ -251,9 +254,9 @@ fn search_leaves(scene: &Scene, a: &Node, b: &Node, test: PairTest) -> Option<(u
 }
 
 /// Checks whether two triangles show that the solids overlap: cases 1 to 3.
-fn show_overlap(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
+fn show_overlap(scene: &PairFrame, f: &Triangle, g: &Triangle) -> bool {
     let noise = 4.0 * scene.noise;
-    if (0..3).any(|axis| f.bounds.is_apart(&g.bounds, axis, noise)) {
+    if (0..3).any(|axis| f.bounds.is_separated_along(&g.bounds, axis, noise)) {
         return false;
     }
     if let Some(found) = thin::show_overlap(scene, f, g) {
@@ -272,7 +275,7 @@ fn show_overlap(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
         if !f.is_open() && !g.is_open() {
             let (axis, facing) = f.open_axis(scene);
             let [a, b, c] = &g.corners;
-            let other = scene.turn_about(axis, a, b, c);
+            let other = scene.projected_orientation(axis, a, b, c);
             // As for whole nodes, facets that face each other show no overlap.
             if other == facing.reverse() {
                 return false;
@@ -290,17 +293,17 @@ fn show_overlap(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
 }
 
 /// Checks whether two triangles are certainly nearer than the minimum gap.
-fn are_nearer(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
-    FacetDifference::new(scene, &f.corners, &g.corners).are_within(scene.keep, false)
+fn are_nearer(scene: &PairFrame, f: &Triangle, g: &Triangle) -> bool {
+    FacetDifference::new(scene, &f.corners, &g.corners).are_within(scene.min_gap, false)
 }
 
 /// Checks whether the distance of two triangles is certainly at most the minimum gap.
-fn are_as_near(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
-    FacetDifference::new(scene, &f.corners, &g.corners).are_within(scene.keep, true)
+fn are_as_near(scene: &PairFrame, f: &Triangle, g: &Triangle) -> bool {
+    FacetDifference::new(scene, &f.corners, &g.corners).are_within(scene.min_gap, true)
 }
 
 /// Checks whether two triangles, as closed sets, have a common point. If they do, an edge of one meets the other.
-fn share_a_point(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
+fn share_a_point(scene: &PairFrame, f: &Triangle, g: &Triangle) -> bool {
     let pierces = |f: &Triangle, g: &Triangle| (0..3).any(|k| edge_reaches(scene, f, k, g));
     match [f, g].map(thin::segment_ends) {
         [Some(p), Some(q)] => thin::share_a_point(scene, p, q),
@@ -311,14 +314,16 @@ fn share_a_point(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
 }
 
 /// Checks whether edge `k` of `f`, ends included, has a common point with `g`, edges included.
-fn edge_reaches(scene: &Scene, f: &Triangle, k: usize, g: &Triangle) -> bool {
+fn edge_reaches(scene: &PairFrame, f: &Triangle, k: usize, g: &Triangle) -> bool {
     let (p, q) = (&f.corners[k], &f.corners[(k + 1) % 3]);
     let [a, b, c] = &g.corners;
-    let ends = (scene.outside(a, b, c, p), scene.outside(a, b, c, q));
+    let ends = (scene.side_of_plane(a, b, c, p), scene.side_of_plane(a, b, c, q));
     match ends {
         (Ordering::Equal, Ordering::Equal) => {
             let (axis, facing) = g.open_axis(scene);
-            let turn = |u: &Corner, v: &Corner, w: &Corner| scene.turn_about(axis, u, v, w);
+            let turn = |u: &PlacedVertex, v: &PlacedVertex, w: &PlacedVertex| {
+                scene.projected_orientation(axis, u, v, w)
+            };
             let of_corners = g.corners.map(|c| turn(p, q, &c));
             let beside = one_sided(of_corners);
             let beyond = (0..3).any(|k| {
@@ -330,7 +335,7 @@ fn edge_reaches(scene: &Scene, f: &Triangle, k: usize, g: &Triangle) -> bool {
         (x, y) if x == y => false,
         _ => {
             // The line meets the triangle if its orientations relative to the sides do not have opposite signs.
-            let turns = [(a, b), (b, c), (c, a)].map(|(u, v)| scene.outside(p, q, u, v));
+            let turns = [(a, b), (b, c), (c, a)].map(|(u, v)| scene.side_of_plane(p, q, u, v));
             !(turns.contains(&Ordering::Greater) && turns.contains(&Ordering::Less))
         }
     }
@@ -350,7 +355,7 @@ fn has_both_signs(signs: [Ordering; 3]) -> bool {
 /// the upper side of the other plane, the order of two pairs of sides along this line shows whether the segments
 /// overlap.
 fn facets_cross(
-    scene: &Scene,
+    scene: &PairFrame,
     f: &Triangle,
     of_f: [Ordering; 3],
     g: &Triangle,
@@ -365,13 +370,13 @@ fn facets_cross(
     if !q_up {
         p.swap(1, 2);
     }
-    scene.outside(p[1], q[0], p[0], q[1]) == Ordering::Less
-        && scene.outside(p[0], q[0], p[2], q[2]) == Ordering::Less
+    scene.side_of_plane(p[1], q[0], p[0], q[1]) == Ordering::Less
+        && scene.side_of_plane(p[0], q[0], p[2], q[2]) == Ordering::Less
 }
 
 /// Returns the corners in their order, beginning with the one that is alone on its side of the other plane, and whether
 /// that is the upper side.
-fn alone_first<'c>(triangle: &'c Triangle, signs: [Ordering; 3]) -> ([&'c Corner; 3], bool) {
+fn alone_first<'c>(triangle: &'c Triangle, signs: [Ordering; 3]) -> ([&'c PlacedVertex; 3], bool) {
     let alone = |k: usize| {
         signs[k] != Ordering::Equal
             && signs[(k + 1) % 3] != signs[k]
@@ -384,7 +389,7 @@ fn alone_first<'c>(triangle: &'c Triangle, signs: [Ordering; 3]) -> ([&'c Corner
 
 /// Checks case 2 for triangles in one plane that both have the orientation `facing` about an axis.
 fn share_a_part(
-    scene: &Scene,
+    scene: &PairFrame,
     (axis, facing): (usize, Ordering),
     f: &Triangle,
     g: &Triangle,
@@ -392,7 +397,7 @@ fn share_a_part(
     let separates = |f: &Triangle, g: &Triangle| {
         (0..3).any(|k| {
             let (a, b) = (&f.corners[k], &f.corners[(k + 1) % 3]);
-            g.corners.iter().all(|c| scene.turn_about(axis, a, b, c) != facing)
+            g.corners.iter().all(|c| scene.projected_orientation(axis, a, b, c) != facing)
         })
     };
     !separates(f, g) && !separates(g, f)
@@ -400,7 +405,7 @@ fn share_a_part(
 
 /// Checks case 3 for edge `k` of `f`.
 fn edge_meets(
-    scene: &Scene,
+    scene: &PairFrame,
     f: &Triangle,
     k: usize,
     of_f: [Ordering; 3],
@@ -414,17 +419,21 @@ fn edge_meets(
     let (p, q) = (&f.corners[k], &f.corners[next]);
     // A boundary edge has no neighbour.
     let beyond = f.corner_across_edge(k);
-    let own =
-        EdgeNeighbourhood::around_edge(f.is_open(), beyond.is_some(), [Ray::to(0), Ray::to(1)]);
+    let own = EdgeNeighbourhood::around_edge(
+        f.is_open(),
+        beyond.is_some(),
+        [Ray::towards(0), Ray::towards(1)],
+    );
     let Some(own) = own else { return false };
     let (apex, beyond) = (&f.corners[(k + 2) % 3], &beyond.unwrap_or(f.corners[(k + 2) % 3]));
     if runs_through(scene, [p, q], g) {
         let (axis, facing) = g.open_axis(scene);
-        let away = |c: &&Corner| scene.turn_about(axis, p, q, *c) != Ordering::Equal;
+        let away =
+            |c: &&PlacedVertex| scene.projected_orientation(axis, p, q, *c) != Ordering::Equal;
         let Some(w) = g.corners.iter().find(away) else { return false };
-        let outwards = scene.turn_about(axis, p, q, w) == facing;
+        let outwards = scene.projected_orientation(axis, p, q, w) == facing;
         let back = Ray { point: 2, opposite: true };
-        let (start, end) = if outwards { (back, Ray::to(2)) } else { (Ray::to(2), back) };
+        let (start, end) = if outwards { (back, Ray::towards(2)) } else { (Ray::towards(2), back) };
         let around = EdgeAxis { scene, p, q, points: [beyond, apex, w, w] };
         let other = EdgeNeighbourhood::around_edge(g.is_open(), true, [start, end]);
         return other.is_some_and(|other| own.overlaps_around(&other, &around));
@@ -436,8 +445,11 @@ fn edge_meets(
             return false;
         };
         let across = g.corner_across_edge(j);
-        let other =
-            EdgeNeighbourhood::around_edge(g.is_open(), across.is_some(), [Ray::to(2), Ray::to(3)]);
+        let other = EdgeNeighbourhood::around_edge(
+            g.is_open(),
+            across.is_some(),
+            [Ray::towards(2), Ray::towards(3)],
+        );
         let other = other.map(|other| if along { other } else { other.reversed() });
         let apex_of_g = &g.corners[(j + 2) % 3];
         let points = [beyond, apex, &across.unwrap_or(*apex_of_g), apex_of_g];
@@ -482,15 +494,16 @@ impl EdgeNeighbourhood {
         }
     }
 
-    pub(super) fn overlaps_around(&self, other: &Self, axis: &impl Axis) -> bool {
+    pub(super) fn overlaps_around(&self, other: &Self, axis: &impl AxisSigns) -> bool {
         match (self, other) {
-            (Self::Material(a), Self::Material(b)) => a.meets(b, axis),
+            (Self::Material(a), Self::Material(b)) => a.intersects(b, axis),
             (Self::Material(a), rays) | (rays, Self::Material(a)) => {
-                rays.half_planes().any(|ray| a.holds(ray, axis))
+                rays.half_planes().any(|ray| a.contains_strictly(ray, axis))
             }
             (&Self::Bend([a, b]), &Self::Bend([c, e])) => {
                 let (one, rest) = (Wedge { start: a, end: b }, Wedge { start: b, end: a });
-                let divides = |c, e| one.holds(c, axis) && rest.holds(e, axis);
+                let divides =
+                    |c, e| one.contains_strictly(c, axis) && rest.contains_strictly(e, axis);
                 divides(c, e) || divides(e, c)
             }
             _ => false,
@@ -508,23 +521,29 @@ impl EdgeNeighbourhood {
 }
 
 /// Checks whether a segment in the plane of a triangle has points in its interior.
-fn runs_through(scene: &Scene, [p, q]: [&Corner; 2], g: &Triangle) -> bool {
+fn runs_through(scene: &PairFrame, [p, q]: [&PlacedVertex; 2], g: &Triangle) -> bool {
     let (axis, facing) = g.open_axis(scene);
-    let of_corners = g.corners.map(|c| scene.turn_about(axis, p, q, &c));
+    let of_corners = g.corners.map(|c| scene.projected_orientation(axis, p, q, &c));
     if !has_both_signs(of_corners) {
         return false;
     }
     !(0..3).any(|k| {
         let (a, b) = (&g.corners[k], &g.corners[(k + 1) % 3]);
-        scene.turn_about(axis, a, b, p) != facing && scene.turn_about(axis, a, b, q) != facing
+        scene.projected_orientation(axis, a, b, p) != facing
+            && scene.projected_orientation(axis, a, b, q) != facing
     })
 }
 
 /// Checks whether two segments on one line share more than a point. Returns whether they have the same direction;
 /// `None` if they share at most a point or lie on different lines.
-fn runs_along(scene: &Scene, [p, q]: [&Corner; 2], [r, s]: [&Corner; 2]) -> Option<bool> {
-    let on_line =
-        |c: &Corner| (0..3).all(|axis| scene.turn_about(axis, p, q, c) == Ordering::Equal);
+fn runs_along(
+    scene: &PairFrame,
+    [p, q]: [&PlacedVertex; 2],
+    [r, s]: [&PlacedVertex; 2],
+) -> Option<bool> {
+    let on_line = |c: &PlacedVertex| {
+        (0..3).all(|axis| scene.projected_orientation(axis, p, q, c) == Ordering::Equal)
+    };
     if !on_line(r) || !on_line(s) {
         return None;
     }
@@ -538,19 +557,20 @@ fn runs_along(scene: &Scene, [p, q]: [&Corner; 2], [r, s]: [&Corner; 2]) -> Opti
 
 /// An edge and the points around it that define rays.
 pub(super) struct EdgeAxis<'c, 's, 'a> {
-    pub(super) scene: &'s Scene<'a>,
-    pub(super) p: &'c Corner,
-    pub(super) q: &'c Corner,
-    pub(super) points: [&'c Corner; 4],
+    pub(super) scene: &'s PairFrame<'a>,
+    pub(super) p: &'c PlacedVertex,
+    pub(super) q: &'c PlacedVertex,
+    pub(super) points: [&'c PlacedVertex; 4],
 }
 
-impl Axis for EdgeAxis<'_, '_, '_> {
-    fn det(&self, x: usize, y: usize) -> Ordering {
-        self.scene.outside(self.p, self.q, self.points[x], self.points[y])
+impl AxisSigns for EdgeAxis<'_, '_, '_> {
+    fn determinant_sign(&self, x: usize, y: usize) -> Ordering {
+        self.scene.side_of_plane(self.p, self.q, self.points[x], self.points[y])
     }
 
     fn same_half(&self, x: usize, y: usize) -> bool {
-        let turn = |k: usize, axis| self.scene.turn_about(axis, self.p, self.q, self.points[k]);
+        let turn =
+            |k: usize, axis| self.scene.projected_orientation(axis, self.p, self.q, self.points[k]);
         let axis = (0..3).find(|&axis| turn(x, axis) != Ordering::Equal).unwrap_or(0);
         turn(x, axis) == turn(y, axis)
     }

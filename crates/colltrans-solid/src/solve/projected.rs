@@ -3,14 +3,14 @@
 //! - A node is bounded by a box and by a slab `low <= n.x <= high`, and the normals of its facets by a spread around
 //!   `n`.
 //! - All bounds are rounded outwards by the noise of coordinates, except along axes where coordinates are exact.
-//! - Along those axes boxes that touch are distinguished from boxes that overlap. Therefore zero clearance is cut off
-//!   high up in the trees.
+//! - Along those axes boxes that touch are distinguished from boxes that overlap. Therefore pairs of nodes with zero
+//!   clearance are dismissed near the roots of the trees.
 
 use glam::{DMat3, DVec3};
 
-use super::scene::{Scene, Side};
-use crate::body::Shrinking;
-use crate::body::cuts::Parts;
+use super::scene::{PairFrame, PlacedBody};
+use crate::body::OffsetField;
+use crate::body::cuts::NormalDecomposition;
 use colltrans_convex::body::Aabb;
 use colltrans_kernel::error_free::sum_error;
 
@@ -40,11 +40,11 @@ pub struct Projected {
 
 impl Projected {
     /// Returns the bounds of both bodies as a whole.
-    pub(crate) fn root_bounds(scene: &Scene) -> [Self; 2] {
+    pub(crate) fn root_bounds(scene: &PairFrame) -> [Self; 2] {
         [&scene.moving, &scene.fixed].map(|side| Self::new(scene, side, 0))
     }
 
-    pub fn new(scene: &Scene, side: &Side, at: usize) -> Self {
+    pub fn new(scene: &PairFrame, side: &PlacedBody, at: usize) -> Self {
         let node = &side.solid.nodes()[at];
         let axis = side.view * node.axis;
         let shift = axis.dot(side.view_offset);
@@ -57,7 +57,7 @@ impl Projected {
             slab: [node.slab[0] + shift - noise, node.slab[1] + shift + noise],
             along: node.axis.dot(side.along),
             spread: f64::from(node.spread),
-            inward: scene.has_min_gap() || side.inward & node.inward != 0,
+            inward: scene.has_min_gap() || side.inward & node.inward_sides != 0,
         };
         if let Some(shrinking) = side.shrinking {
             projected.move_inwards(shrinking, side.amount, at);
@@ -72,22 +72,23 @@ impl Projected {
         }
         if side.swell > 0.0 {
             projected.slab = [projected.slab[0] - side.swell, projected.slab[1] + side.swell];
-            projected.bounds = projected.bounds.grown(side.swell + scene.noise);
+            projected.bounds = projected.bounds.expanded(side.swell + scene.noise);
         }
         if node.is_open() {
             // The shadow of an edge-on facet has no width, but counts.
-            projected.bounds = projected.bounds.grown(scene.noise);
+            projected.bounds = projected.bounds.expanded(scene.noise);
         }
         projected
     }
 
     /// Moves the sides inwards by the offset.
-    fn move_inwards(&mut self, shrinking: &Shrinking, amount: f64, at: usize) {
-        let motion = &shrinking.nodes[at];
-        let swell = shrinking.farthest * amount.abs();
-        self.spread += f64::from(motion.turn) * amount + f64::from(motion.rough);
-        self.local = shrinking.boxed(self.local, amount, at);
-        if amount <= shrinking.most {
+    fn move_inwards(&mut self, shrinking: &OffsetField, amount: f64, at: usize) {
+        let motion = &shrinking.node_motions[at];
+        let swell = shrinking.max_displacement * amount.abs();
+        self.spread +=
+            f64::from(motion.normal_turn_rate) * amount + f64::from(motion.rounding_turn);
+        self.local = shrinking.offset_box(self.local, amount, at);
+        if amount <= shrinking.max_rate_amount {
             self.slab[0] += f64::from(motion.slab[0]) * amount;
             self.slab[1] += f64::from(motion.slab[1]) * amount;
         } else {
@@ -109,34 +110,34 @@ impl Projected {
     }
 
     /// Returns the range of the box along axis `k` of the body, in the query frame.
-    pub(crate) fn local_range(&self, side: &Side, k: usize) -> [f64; 2] {
+    pub(crate) fn local_range(&self, side: &PlacedBody, k: usize) -> [f64; 2] {
         let shift = side.view.col(k).dot(side.view_offset);
         let skew = side.skew_bound() + side.swell;
         [self.local.low[k] + shift - skew, self.local.high[k] + shift + skew]
     }
 
     /// Returns the range of `m.x` over the node for a unit vector `m`.
-    pub(crate) fn range_along(&self, side: &Side, m: DVec3, noise: f64) -> [f64; 2] {
+    pub(crate) fn range_along(&self, side: &PlacedBody, m: DVec3, noise: f64) -> [f64; 2] {
         [self.least_along(side, m, noise), -self.least_along(side, -m, noise)]
     }
 
     /// Returns a lower bound of `m.x` over the node for a unit vector `m`. If the cosine of `m` and the slab's axis
     /// exceeds [`PARALLEL`], the slab bounds that component, and the box with its cut corners the remainder.
-    pub(crate) fn least_along(&self, side: &Side, m: DVec3, noise: f64) -> f64 {
+    pub(crate) fn least_along(&self, side: &PlacedBody, m: DVec3, noise: f64) -> f64 {
         let (least, local) = self.least_uncut(side, m, noise);
         least + self.cut_gain(side, local)
     }
 
     /// Checks whether the node lies beyond the coordinate `place` along a unit vector. The cuts of its box are
     /// evaluated only if the uncut box does not decide.
-    pub(crate) fn is_beyond(&self, side: &Side, m: DVec3, noise: f64, place: f64) -> bool {
+    pub(crate) fn is_beyond(&self, side: &PlacedBody, m: DVec3, noise: f64, place: f64) -> bool {
         let (least, local) = self.least_uncut(side, m, noise);
         least > place || least + self.cut_gain(side, local) > place
     }
 
     /// Returns a lower bound of `m.x` from the uncut box, and the vector in the body frame along which the box was
     /// measured.
-    fn least_uncut(&self, side: &Side, m: DVec3, noise: f64) -> (f64, DVec3) {
+    fn least_uncut(&self, side: &PlacedBody, m: DVec3, noise: f64) -> (f64, DVec3) {
         let along = self.axis.dot(m);
         let (mut rest, mut slab) = (m, 0.0);
         if along.abs() > PARALLEL && self.slab[1] < f64::INFINITY {
@@ -147,16 +148,16 @@ impl Projected {
         }
         let (local, bounds) = (side.view.transpose() * rest, self.local);
         let middle = local.dot(bounds.center()) + rest.dot(side.view_offset);
-        let spread = local.abs().dot(bounds.size() * 0.5) + noise;
+        let spread = local.abs().dot(bounds.side_lengths() * 0.5) + noise;
         (slab + middle - spread - side.swell, local)
     }
 
     /// Returns the length by which the cuts of its box shorten its extent against a vector of the body frame.
-    fn cut_gain(&self, side: &Side, local: DVec3) -> f64 {
+    fn cut_gain(&self, side: &PlacedBody, local: DVec3) -> f64 {
         let node = &side.solid.nodes()[self.node as usize];
-        Parts::new(-local).support_reduction_by_cuts(
+        NormalDecomposition::new(-local).support_reduction_by_cuts(
             &node.cuts,
-            node.bounds.size(),
+            node.bounds.side_lengths(),
             side.max_displacement(),
         )
     }
@@ -166,8 +167,9 @@ impl Projected {
         self.slab[1] < f64::INFINITY && self.axis.z.abs() > STEEP
     }
 
-    /// Checks whether the node may have a level facet that blocks where its box shares no more than a plane with a box
-    /// that it leaves behind.
+    /// Checks whether the node may have a level facet that blocks although the largest gap of two boxes is 0. Such a
+    /// facet faces into its box and lies in the side where the moving body begins along the direction, or where the
+    /// fixed one ends.
     pub(crate) fn may_be_level(&self) -> bool {
         self.inward
     }
@@ -184,8 +186,8 @@ impl Projected {
 }
 
 /// Computes the node's box in the query frame: exact along aligned axes, rounded outwards along others.
-fn box_in_query_frame(scene: &Scene, side: &Side, local: Aabb) -> Aabb {
-    let (center, half) = (local.center(), local.size() * 0.5);
+fn box_in_query_frame(scene: &PairFrame, side: &PlacedBody, local: Aabb) -> Aabb {
+    let (center, half) = (local.center(), local.side_lengths() * 0.5);
     let middle = side.view * center + side.view_offset;
     let DMat3 { x_axis, y_axis, z_axis } = side.view;
     let extent = x_axis.abs() * half.x + y_axis.abs() * half.y + z_axis.abs() * half.z;

@@ -5,8 +5,9 @@
 //!   height. Its coordinates are rounded.
 //! - Exact signs are computed from setting frame coordinates: sums of products of matrix entries, vertices and
 //!   translations, without rounding.
-//! - A coordinate of the query frame has an error of at most [`Scene::noise`], `32 u S`. Coordinates are *exact* if the
-//!   matrix only permutes axes and changes signs, and adding the offset does not round.
+//! - A coordinate of the query frame has an error of at most [`Scene::noise`], `32 u S`. Coordinates are *exact* if all
+//!   axes of the query frame are axes of the body and of the world, and neither the translation nor its addition is
+//!   rounded.
 //! - A pose's matrix `R` may deviate from a rotation by `1e-6`. [`Side::skew_bound`] bounds the effect on coordinates
 //!   along an axis `R n`, and [`Side::defect`] the rotation of a facet's normal. Derivation:
 //!   `docs/theory/solid-rounding.md`.
@@ -15,11 +16,11 @@ use std::cell::OnceCell;
 
 use glam::{DMat3, DVec3};
 
-use crate::body::{Shrinking, Solid, displace};
+use crate::body::{OffsetField, Solid, offset_vertex};
 use colltrans_convex::body::Aabb;
 use colltrans_convex::setting::Setting;
 use colltrans_kernel::error_free::sum_error;
-use colltrans_kernel::fine::Fine;
+use colltrans_kernel::extended::ExtendedPoint;
 use colltrans_kernel::integer::Integer;
 use colltrans_kernel::noise::Noise;
 use colltrans_kernel::pose::rotation_defect;
@@ -29,7 +30,7 @@ const ROTATION_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// One of the two bodies, placed and offset.
 #[derive(Clone, Copy)]
-pub struct Side<'a> {
+pub struct PlacedBody<'a> {
     pub solid: &'a Solid,
     pub(crate) moving: bool,
     /// Distance by which its facets are moved inwards.
@@ -37,7 +38,7 @@ pub struct Side<'a> {
     /// Distance by which the bounds of its nodes are enlarged: the minimum gap, a little stretched, for the moving
     /// body, and 0 for the fixed one.
     pub(crate) swell: f64,
-    pub shrinking: Option<&'a Shrinking>,
+    pub shrinking: Option<&'a OffsetField>,
     /// Maps the body frame to the setting frame, without the translation.
     pub(crate) matrix: DMat3,
     /// Translation in the setting frame, and its rounding error.
@@ -59,65 +60,72 @@ pub struct Side<'a> {
 }
 
 /// Two placed solids, their offsets, and the direction of the query.
-pub struct Scene<'a> {
+pub struct PairFrame<'a> {
     pub(crate) setting: Setting<'a, Solid>,
-    pub moving: Side<'a>,
-    pub fixed: Side<'a>,
+    pub moving: PlacedBody<'a>,
+    pub fixed: PlacedBody<'a>,
     /// Maps the setting frame to the query frame.
     pub(crate) frame: DMat3,
     /// Minimum gap of the bodies; 0 if it is too small to be distinguished from rounding errors.
-    pub(crate) keep: f64,
+    pub(crate) min_gap: f64,
     /// Bound on the rounding error of a coordinate in the query frame.
     pub noise: f64,
 }
 
-impl<'a> Scene<'a> {
-    /// Builds the scene of two bodies that are offset by the given amounts, with a minimum gap `keep`.
+impl<'a> PairFrame<'a> {
+    /// Builds the scene of two bodies that are offset by the given amounts, with a minimum gap `min_gap`.
     #[inline]
-    pub fn new(setting: &Setting<'a, Solid>, [moving, fixed]: [f64; 2], keep: f64) -> Self {
+    pub fn new(setting: &Setting<'a, Solid>, [moving, fixed]: [f64; 2], min_gap: f64) -> Self {
         let frame = frame_along(setting.direction / setting.length);
         let at_origin = [DVec3::ZERO; 2];
-        let moving =
-            Side::new((setting.moving, moving, true), setting.moving_matrix, at_origin, frame);
+        let moving = PlacedBody::new(
+            (setting.moving, moving, true),
+            setting.moving_matrix,
+            at_origin,
+            frame,
+        );
         let offset = setting.offset_and_error();
-        let fixed = Side::new((setting.fixed, fixed, false), setting.fixed_matrix, offset, frame);
-        let mut scene = Self { setting: *setting, moving, fixed, frame, keep, noise: 0.0 };
-        scene.set_noise_and_gap(keep);
+        let fixed =
+            PlacedBody::new((setting.fixed, fixed, false), setting.fixed_matrix, offset, frame);
+        let mut scene =
+            Self { setting: *setting, moving, fixed, frame, min_gap: min_gap, noise: 0.0 };
+        scene.set_noise_and_gap(min_gap);
         scene
     }
 
-    /// Sets what depends on the sizes of the bodies and the minimum gap.
-    fn set_noise_and_gap(&mut self, keep: f64) {
+    /// Sets the noise, the effective minimum gap and the enlargement of the moving body, from the sizes of the bodies
+    /// and the minimum gap `min_gap`.
+    fn set_noise_and_gap(&mut self, min_gap: f64) {
         let Self { setting, moving, fixed, .. } = self;
         let size = moving.max_radius() + fixed.max_radius() + setting.offset.length();
-        let (noise, keep) = noise_and_gap(size, keep);
+        let (noise, min_gap) = noise_and_gap(size, min_gap);
         // A pose may stretch axes by its defect. The last term covers rounding.
         let stretch = 1.0 + 2.0 * moving.defect.max(fixed.defect) + 16.0 * f64::EPSILON;
-        moving.swell = keep * stretch;
+        moving.swell = min_gap * stretch;
         self.noise = noise;
-        self.keep = keep;
+        self.min_gap = min_gap;
     }
 
     /// Checks whether a minimum gap is required.
     #[inline]
     pub(crate) fn has_min_gap(&self) -> bool {
         // Without the feature the compiler removes code that only a minimum gap reaches.
-        cfg!(feature = "keep") && self.keep > 0.0
+        cfg!(feature = "min-gap") && self.min_gap > 0.0
     }
 
     /// Returns the position of a corner in the setting frame.
-    pub(crate) fn corner_position(&self, corner: &Corner) -> DVec3 {
+    pub(crate) fn corner_position(&self, corner: &PlacedVertex) -> DVec3 {
         let side = self.side(corner.moving);
         side.matrix * corner.local + side.offset[0]
     }
 
     /// Returns this scene with the bodies offset by other amounts.
-    pub(crate) fn shrunk(&self, moving: f64, fixed: f64) -> Self {
-        let resized = |side: &Side<'a>, amount| {
+    pub(crate) fn with_offsets(&self, moving: f64, fixed: f64) -> Self {
+        let resized = |side: &PlacedBody<'a>, amount| {
             let amount = if side.solid.has_offset() { amount } else { 0.0 };
-            let shrinking = (amount != 0.0).then(|| side.solid.shrinking());
+            let shrinking = (amount != 0.0).then(|| side.solid.offset_field());
             let inward = inward_side(side.along, side.aligned, side.moving, amount);
-            Side { amount, shrinking, inward, ..*side }
+            PlacedBody { amount, shrinking, inward, ..*side }
         };
         Self { moving: resized(&self.moving, moving), fixed: resized(&self.fixed, fixed), ..*self }
     }
@@ -128,7 +136,7 @@ impl<'a> Scene<'a> {
     }
 
     #[inline]
-    pub fn side(&self, moving: bool) -> &Side<'a> {
+    pub fn side(&self, moving: bool) -> &PlacedBody<'a> {
         if moving { &self.moving } else { &self.fixed }
     }
 
@@ -138,7 +146,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-impl<'a> Side<'a> {
+impl<'a> PlacedBody<'a> {
     fn new(
         (solid, amount, moving): (&'a Solid, f64, bool),
         matrix: DMat3,
@@ -157,7 +165,7 @@ impl<'a> Side<'a> {
             moving,
             amount,
             swell: 0.0,
-            shrinking: (amount != 0.0).then(|| solid.shrinking()),
+            shrinking: (amount != 0.0).then(|| solid.offset_field()),
             matrix,
             offset,
             view,
@@ -195,12 +203,12 @@ impl<'a> Side<'a> {
         let at = self.solid.vertices()[v as usize];
         match self.shrinking {
             None => at,
-            Some(shrinking) => displace(at, shrinking.field[v as usize], self.amount),
+            Some(shrinking) => offset_vertex(at, shrinking.displacements[v as usize], self.amount),
         }
     }
 
     #[inline]
-    pub fn corner(&self, v: u32) -> Corner {
+    pub fn corner(&self, v: u32) -> PlacedVertex {
         let local = self.offset_vertex(v);
         let turned = self.view * local;
         let at = turned + self.view_offset;
@@ -212,17 +220,17 @@ impl<'a> Side<'a> {
             };
             exact = self.offset[1] == DVec3::ZERO && !(lost(0) || lost(1) || lost(2));
         }
-        Corner { local, at, exact, moving: self.moving }
+        PlacedVertex { local, at, exact, moving: self.moving }
     }
 
-    pub(crate) fn corners(&self, triangle: usize) -> [Corner; 3] {
+    pub(crate) fn corners(&self, triangle: usize) -> [PlacedVertex; 3] {
         self.solid.triangles()[triangle].map(|v| self.corner(v))
     }
 }
 
 /// A vertex of one of the bodies.
 #[derive(Debug, Clone, Copy)]
-pub struct Corner {
+pub struct PlacedVertex {
     /// Position in the body frame, after the offset.
     pub(crate) local: DVec3,
     /// Position in the query frame.
@@ -235,19 +243,19 @@ pub struct Corner {
 /// A point of a body: a vertex, or a point within a facet.
 pub trait ExactPoint {
     /// Returns the rounded position in the query frame.
-    fn at(&self) -> DVec3;
+    fn query_position(&self) -> DVec3;
     /// Checks whether [`Self::at`] is exact.
     fn is_exact(&self) -> bool;
     /// Returns the position in the setting frame; `None` if `f64` cannot represent it exactly.
-    fn world(&self, scene: &Scene) -> Option<DVec3>;
+    fn exact_position(&self, scene: &PairFrame) -> Option<DVec3>;
     /// Returns the exact position in the setting frame.
-    fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3];
+    fn integer_position<const N: usize>(&self, scene: &PairFrame) -> [Integer<N>; 3];
     /// Returns the position in the setting frame in double-double precision.
-    fn fine(&self, scene: &Scene) -> Fine;
+    fn double_double_position(&self, scene: &PairFrame) -> ExtendedPoint;
 }
 
-impl ExactPoint for Corner {
-    fn at(&self) -> DVec3 {
+impl ExactPoint for PlacedVertex {
+    fn query_position(&self) -> DVec3 {
         self.at
     }
 
@@ -255,7 +263,7 @@ impl ExactPoint for Corner {
         self.exact
     }
 
-    fn world(&self, scene: &Scene) -> Option<DVec3> {
+    fn exact_position(&self, scene: &PairFrame) -> Option<DVec3> {
         let side = scene.side(self.moving);
         if !side.permutes {
             return None;
@@ -266,31 +274,31 @@ impl ExactPoint for Corner {
         (exact && lost == DVec3::ZERO).then(|| turned + offset)
     }
 
-    fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3] {
+    fn integer_position<const N: usize>(&self, scene: &PairFrame) -> [Integer<N>; 3] {
         place_exactly(scene.side(self.moving), &[(1.0, self.local)])
     }
 
     #[inline]
-    fn fine(&self, scene: &Scene) -> Fine {
+    fn double_double_position(&self, scene: &PairFrame) -> ExtendedPoint {
         let side = scene.side(self.moving);
-        Fine::placed(&side.matrix, side.offset, &[(1.0, self.local)])
+        ExtendedPoint::from_products(&side.matrix, side.offset, &[(1.0, self.local)])
     }
 }
 
 /// A corner that takes part in several signs: its double-double position is computed once.
 pub(crate) struct CachedCorner<'c> {
-    corner: &'c Corner,
-    fine: OnceCell<Fine>,
+    corner: &'c PlacedVertex,
+    fine: OnceCell<ExtendedPoint>,
 }
 
 impl<'c> CachedCorner<'c> {
-    pub(crate) fn new(corner: &'c Corner) -> Self {
+    pub(crate) fn new(corner: &'c PlacedVertex) -> Self {
         Self { corner, fine: OnceCell::new() }
     }
 }
 
 impl ExactPoint for CachedCorner<'_> {
-    fn at(&self) -> DVec3 {
+    fn query_position(&self) -> DVec3 {
         self.corner.at
     }
 
@@ -298,43 +306,44 @@ impl ExactPoint for CachedCorner<'_> {
         self.corner.exact
     }
 
-    fn world(&self, scene: &Scene) -> Option<DVec3> {
-        self.corner.world(scene)
+    fn exact_position(&self, scene: &PairFrame) -> Option<DVec3> {
+        self.corner.exact_position(scene)
     }
 
-    fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3] {
-        self.corner.wide(scene)
+    fn integer_position<const N: usize>(&self, scene: &PairFrame) -> [Integer<N>; 3] {
+        self.corner.integer_position(scene)
     }
 
-    fn fine(&self, scene: &Scene) -> Fine {
-        *self.fine.get_or_init(|| self.corner.fine(scene))
+    fn double_double_position(&self, scene: &PairFrame) -> ExtendedPoint {
+        *self.fine.get_or_init(|| self.corner.double_double_position(scene))
     }
 }
 
-/// Computes a weighted mean of vertices of one body exactly, in the setting frame. The weights are powers of two, at
-/// least `1/64`, and add up to 1.
+/// Computes a weighted mean of vertices of one body exactly, in the setting frame. The weights are 0 or powers of two,
+/// at least `1/64`, and add up to 1.
 pub(crate) fn place_exactly<const N: usize>(
-    side: &Side,
+    side: &PlacedBody,
     terms: &[(f64, DVec3)],
 ) -> [Integer<N>; 3] {
     let [offset, lost] = side.offset;
     std::array::from_fn(|row| {
-        let mut sum = Integer::number(offset[row]).add(&Integer::number(lost[row]));
+        let mut sum = Integer::exact_number(offset[row]).add(&Integer::exact_number(lost[row]));
         for (weight, point) in terms {
             for column in 0..3 {
                 let entry = side.matrix.col(column)[row] * weight;
-                sum = sum.add(&Integer::product(entry, point[column]));
+                sum = sum.add(&Integer::exact_product(entry, point[column]));
             }
         }
         sum
     })
 }
 
-/// Returns the noise of a configuration of this size, and its minimum gap: 0 if `keep` is too small to be distinguished
+/// Returns the noise of a configuration of this size, and its minimum gap: 0 if `min_gap` is too small to be distinguished
 /// from rounding errors.
-pub(crate) fn noise_and_gap(size: f64, keep: f64) -> (f64, f64) {
-    let keep = if Noise::of(size + keep).is_slight(keep) { 0.0 } else { keep };
-    (Noise::of(size + keep).point(), keep)
+pub(crate) fn noise_and_gap(size: f64, min_gap: f64) -> (f64, f64) {
+    let min_gap =
+        if Noise::for_size(size + min_gap).is_below_noise(min_gap) { 0.0 } else { min_gap };
+    (Noise::for_size(size + min_gap).point_error(), min_gap)
 }
 
 /// Returns the size `S` of a configuration with this noise.

@@ -13,14 +13,14 @@ use std::collections::BinaryHeap;
 use std::ops::Range;
 
 use super::bound::{Profile, Reason, dismissal_reason, least_gap};
-use super::leaf::{self, Facet, Gap, Meeting, Opposed, Wanted};
+use super::edge_on::{self, EdgeOnFacet};
+use super::leaf::{self, Facet, Gap, GapFilter, Meeting, Opposed};
 use super::projected::Projected;
-use super::rim::{self, EdgeOnFacet};
-use super::scene::{Scene, Side};
+use super::scene::{PairFrame, PlacedBody};
 use super::separate;
 use super::separating_axes::{Reach, SeparatingAxes};
 use crate::solve::steps::SolidSteps;
-use colltrans_kernel::descent::Entry;
+use colltrans_kernel::descent::QueuedPair;
 
 /// Noises by which an answer may exceed the least gap. A third of it covers the rounding of node bounds.
 pub(crate) const SLACK: f64 = 12.0;
@@ -41,11 +41,11 @@ impl Aim {
         if self == Self::Least { gap } else { gap.max(0.0) }
     }
 
-    pub(crate) fn gap_filter(self) -> Wanted {
+    pub(crate) fn gap_filter(self) -> GapFilter {
         match self {
-            Self::Least => Wanted::All,
-            Self::Stop => Wanted::NotParting,
-            Self::LaterStop => Wanted::NotCrossing,
+            Self::Least => GapFilter::All,
+            Self::Stop => GapFilter::NotParting,
+            Self::LaterStop => GapFilter::NotCrossing,
         }
     }
 
@@ -62,7 +62,7 @@ impl Aim {
 
 /// The pair of facets that attains the least gap.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Found {
+pub(crate) struct LeastGap {
     /// The gap, as a length.
     pub(crate) gap: f64,
     pub(crate) moving: u32,
@@ -74,14 +74,14 @@ pub(crate) struct Found {
     pub(crate) others: f64,
 }
 
-impl Found {
+impl LeastGap {
     /// Returns this pair with the lower bound on all other pairs that a completed search guarantees.
-    pub(crate) fn with_least_others(self, scene: &Scene) -> Self {
+    pub(crate) fn with_least_others(self, scene: &PairFrame) -> Self {
         Self { others: self.gap - SLACK * scene.noise - 1.0625 * node_rounding(scene), ..self }
     }
 
     /// Returns this pair with its gap recomputed exactly if its error exceeds [`FINE`](leaf::FINE) noises.
-    pub(crate) fn with_exact_gap(self, scene: &Scene, aim: Aim) -> Self {
+    pub(crate) fn with_exact_gap(self, scene: &PairFrame, aim: Aim) -> Self {
         if self.at == Meeting::Near || self.error <= leaf::FINE * scene.noise {
             return self;
         }
@@ -97,14 +97,14 @@ impl Found {
 /// allocations.
 #[derive(Debug, Clone, Default)]
 pub struct Workspace {
-    queue: BinaryHeap<Entry>,
+    queue: BinaryHeap<QueuedPair>,
     /// Visited nodes of the moving and the fixed body.
     seen: [NodeCache; 2],
 }
 
 /// The constant part of a search.
 struct Query<'s, 'a> {
-    scene: &'s Scene<'a>,
+    scene: &'s PairFrame<'a>,
     /// `None` if both bodies have the axes of the query frame, because their boxes give the same bounds then.
     axes: Option<SeparatingAxes>,
 }
@@ -140,7 +140,7 @@ impl NodeCache {
     fn add_view(&mut self, query: &Query, moving: bool, at: u32) {
         let side = query.scene.side(moving);
         let node = &side.solid.nodes()[at as usize];
-        let (leaf, size) = (node.is_leaf(), node.size());
+        let (leaf, size) = (node.is_leaf(), node.squared_diagonal());
         let projected = Projected::new(query.scene, side, at as usize);
         if let Some(axes) = &query.axes {
             self.reaches.push(axes.node_extents(side, &projected));
@@ -161,7 +161,7 @@ impl NodeCache {
         }
         let first = self.views.len() as u32;
         let nodes = query.scene.side(moving).solid.nodes();
-        for part in nodes[node as usize].children(node) {
+        for part in nodes[node as usize].child_positions(node) {
             self.add_view(query, moving, part);
         }
         self.views[view as usize].parts = Some([first, 2]);
@@ -169,7 +169,7 @@ impl NodeCache {
     }
 
     /// Returns the facets of a leaf that face the other body.
-    fn leaf_facets(&mut self, scene: &Scene, side: &Side, view: u32) -> Range<usize> {
+    fn leaf_facets(&mut self, scene: &PairFrame, side: &PlacedBody, view: u32) -> Range<usize> {
         let &NodeView { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
         let [first, count] = parts.unwrap_or_else(|| {
             let wanted = if side.moving { Ordering::Greater } else { Ordering::Less };
@@ -185,12 +185,12 @@ impl NodeCache {
 }
 
 /// State of a search.
-pub(crate) struct Search<'s, 'a, F: FnMut([u32; 2], Reason)> {
-    pub(crate) scene: &'s Scene<'a>,
+pub(crate) struct GapSearch<'s, 'a, F: FnMut([u32; 2], Reason)> {
+    pub(crate) scene: &'s PairFrame<'a>,
     pub(crate) aim: Aim,
     /// Upper limit of gaps of interest.
     pub(crate) limit: f64,
-    pub(crate) found: Option<Found>,
+    pub(crate) found: Option<LeastGap>,
     /// Least gap minus its error of all examined pairs other than `found`.
     pub(crate) others: f64,
     /// Callback that receives every pair of nodes that is not split, and the reason.
@@ -198,8 +198,8 @@ pub(crate) struct Search<'s, 'a, F: FnMut([u32; 2], Reason)> {
     pub(crate) steps: SolidSteps,
 }
 
-impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
-    pub(crate) fn new(scene: &'s Scene<'a>, aim: Aim, limit: f64, cut: F) -> Self {
+impl<'s, 'a, F: FnMut([u32; 2], Reason)> GapSearch<'s, 'a, F> {
+    pub(crate) fn new(scene: &'s PairFrame<'a>, aim: Aim, limit: f64, cut: F) -> Self {
         Self {
             scene,
             aim,
@@ -212,19 +212,19 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
     }
 
     /// Examines two triangles only, instead of a whole tree.
-    pub(crate) fn of_pair(mut self, [s, t]: [u32; 2]) -> Option<Found> {
+    pub(crate) fn compare_triangles(mut self, [s, t]: [u32; 2]) -> Option<LeastGap> {
         let scene = self.scene;
         let f = Facet::facing(scene, true, s as usize, Ordering::Greater);
         let g = Facet::facing(scene, false, t as usize, Ordering::Less);
         if let (Some(f), Some(g)) = (&f, &g) {
             self.compare_facets(f, g);
         } else {
-            rim::each_gap_of(scene, [s, t], &mut |pair, gap| self.record_gap(pair, &gap));
+            edge_on::each_gap_of(scene, [s, t], &mut |pair, gap| self.record_gap(pair, &gap));
         }
         self.found.map(|found| found.with_exact_gap(scene, self.aim))
     }
 
-    pub(crate) fn run(&mut self, workspace: &mut Workspace) -> Option<Found> {
+    pub(crate) fn find_least_gap(&mut self, workspace: &mut Workspace) -> Option<LeastGap> {
         let Workspace { queue, seen } = workspace;
         queue.clear();
         let scene = self.scene;
@@ -287,7 +287,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         // The factor covers the rounding of a bound when it is stored in a proof.
         let bounds = self.limit - 1.0625 * node_rounding(scene);
         let others = self.others.min(bounds);
-        self.found.map(|found| Found { others, ..found.with_exact_gap(scene, self.aim) })
+        self.found.map(|found| LeastGap { others, ..found.with_exact_gap(scene, self.aim) })
     }
 
     /// Bounds a pair of views; returns `None` and reports the reason if the pair is cut.
@@ -296,11 +296,11 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         seen: &[NodeCache; 2],
         views: [u32; 2],
         number: u32,
-    ) -> Option<Entry> {
+    ) -> Option<QueuedPair> {
         self.steps.nodes += 1;
         match self.pair_bound(seen, views) {
             Ok(bound) => {
-                Some(Entry { bound: self.aim.clamp_gap(bound), number, reason: (), views })
+                Some(QueuedPair { bound: self.aim.clamp_gap(bound), number, reason: (), views })
             }
             Err(reason) => {
                 (self.cut)(view_nodes(seen, views), reason);
@@ -327,13 +327,13 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
             }
         }
         let nodes = view_nodes(seen, views);
-        if rim::may_have_edge_on(scene, nodes) {
+        if edge_on::may_have_edge_on(scene, nodes) {
             let [f, g] = [(front, true), (back, false)].map(|(facets, moving)| {
                 let k = usize::from(!moving);
                 (EdgeOnFacet::of_leaf(scene, moving, nodes[k]), facets, k)
             });
             let [f, g] = [f, g].map(|(uprights, facets, k)| (uprights, &seen[k].facets[facets]));
-            rim::each_gap(scene, (&f.0, f.1), (&g.0, g.1), &mut |pair, gap| {
+            edge_on::each_gap(scene, (&f.0, f.1), (&g.0, g.1), &mut |pair, gap| {
                 self.record_gap(pair, &gap);
             });
         }
@@ -350,7 +350,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
     fn record_gap(&mut self, [moving, fixed]: [u32; 2], gap: &Gap) {
         let Some(value) = self.aim.contribution(gap) else { return };
         let (at, error, others) = (gap.at, gap.error, f64::INFINITY);
-        let pair = Found { gap: value, moving, fixed, at, error, others };
+        let pair = LeastGap { gap: value, moving, fixed, at, error, others };
         if value >= self.limit {
             self.set_aside(pair);
         } else {
@@ -363,7 +363,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
     }
 
     /// Updates the lower bound `others` with a pair that is not the best.
-    fn set_aside(&mut self, pair: Found) {
+    fn set_aside(&mut self, pair: LeastGap) {
         // If the limit is not positive, such a pair matters only if all gaps are wanted.
         let matters =
             pair.gap - pair.error < self.limit && (self.limit > 0.0 || self.aim == Aim::Least);
@@ -373,22 +373,22 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
 }
 
 /// Returns the maximum rounding error of a bound of two nodes.
-pub(crate) fn node_rounding(scene: &Scene) -> f64 {
+pub(crate) fn node_rounding(scene: &PairFrame) -> f64 {
     SLACK / 3.0 * scene.noise
 }
 
 /// Computes the gap of two facets that block each other, the moving body's first, and its error. The gap is exact
 /// except for its last roundings. `None` if the pair does not block; edge-on facets of open shells are included.
-pub(crate) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64, f64)> {
+pub(crate) fn exact_gap(scene: &PairFrame, aim: Aim, pair: [u32; 2]) -> Option<(f64, f64)> {
     let Some(facets) = Opposed::new(scene, pair) else {
-        return rim::least_gap_of(scene, &|gap| aim.contribution(gap).is_some(), pair);
+        return edge_on::least_gap_of(scene, &|gap| aim.contribution(gap).is_some(), pair);
     };
     exact_gap_of(scene, aim, &facets)
 }
 
-/// Computes the gap of two facets that face each other, exact except for its last roundings, and its error; `None` if
-/// the pair does not count.
-pub(crate) fn exact_gap_of(scene: &Scene, aim: Aim, facets: &Opposed) -> Option<(f64, f64)> {
+/// Computes the least gap of two facets that face each other, exact except for its last roundings, and its error.
+/// `None` if the pair has no gap that counts for `aim`.
+pub(crate) fn exact_gap_of(scene: &PairFrame, aim: Aim, facets: &Opposed) -> Option<(f64, f64)> {
     let gap = facets.exact_gap(scene, aim.gap_filter())?;
     aim.contribution(&gap)?;
     Some((gap.least, gap.error))

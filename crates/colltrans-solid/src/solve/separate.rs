@@ -13,7 +13,7 @@
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
 use super::projected::Projected;
-use super::scene::{Scene, Side, size_from_noise};
+use super::scene::{PairFrame, PlacedBody, size_from_noise};
 use crate::body::Solid;
 use colltrans_convex::answer::{CertificateError, Separation};
 use colltrans_convex::body::Aabb;
@@ -35,25 +35,25 @@ const BOXES: f64 = 2.0;
 
 /// Finds a plane, parallel to the direction, that separates the offset bodies. `None` if rounding errors leave every
 /// plane in doubt, and sometimes for large faces whose distance is at most the offset.
-pub(crate) fn find_separation(scene: &Scene) -> Option<Separation> {
-    let boxes = [&scene.moving, &scene.fixed].map(Side::offset_bounds);
+pub(crate) fn find_separation(scene: &PairFrame) -> Option<Separation> {
+    let boxes = [&scene.moving, &scene.fixed].map(PlacedBody::offset_bounds);
     between_boxes(scene, &boxes).or_else(|| between_hulls(scene))
 }
 
 /// Checks whether the boxes of two bodies are far enough apart that the separating axes of the query confirm it.
 /// The verification of a proof uses those axes, which enlarge a node by 2 noises along each coordinate.
-pub(crate) fn shadows_apart(scene: &Scene, p: &Projected, q: &Projected) -> bool {
+pub(crate) fn shadows_apart(scene: &PairFrame, p: &Projected, q: &Projected) -> bool {
     let clear = |found: Separation| found.margin > ROUNDING * scene.noise;
     !scene.has_min_gap() && between_boxes(scene, &[p.local, q.local]).is_some_and(clear)
 }
 
 /// Finds the plane between the boxes of both bodies with the largest margin, parallel to the direction and to an edge
 /// of one of them.
-fn between_boxes(scene: &Scene, boxes: &[Aabb; 2]) -> Option<Separation> {
+fn between_boxes(scene: &PairFrame, boxes: &[Aabb; 2]) -> Option<Separation> {
     let boxes = Boxes::new(&scene.setting, boxes);
     let normal = boxes.widest_normal(0.0)?;
     let margin = boxes.margin(normal, scene.noise);
-    (margin > scene.keep).then_some(Separation { normal, margin })
+    (margin > scene.min_gap).then_some(Separation { normal, margin })
 }
 
 /// Two boxes in the frames of their bodies.
@@ -69,7 +69,7 @@ impl<'s, 'a> Boxes<'s, 'a> {
     pub(crate) fn new(setting: &'s Setting<'a, Solid>, boxes: &[Aabb; 2]) -> Self {
         let matrices = [setting.moving_matrix, setting.fixed_matrix];
         let [p, q] = [0, 1].map(|k| matrices[k] * boxes[k].center());
-        let halves = boxes.each_ref().map(|b| b.size() * 0.5);
+        let halves = boxes.each_ref().map(|b| b.side_lengths() * 0.5);
         Self { setting, matrices, halves, apart: q + setting.offset - p }
     }
 
@@ -151,9 +151,10 @@ impl<'s, 'a> Boxes<'s, 'a> {
     }
 }
 
-fn between_hulls(scene: &Scene) -> Option<Separation> {
-    let middle =
-        |side: &Side| (side.view * side.solid.bounds().center() + side.view_offset).truncate();
+fn between_hulls(scene: &PairFrame) -> Option<Separation> {
+    let middle = |side: &PlacedBody| {
+        (side.view * side.solid.bounds().center() + side.view_offset).truncate()
+    };
     let mut v = middle(&scene.fixed) - middle(&scene.moving);
     let mut simplex: Simplex = (0, [DVec2::ZERO; 3]);
     for _ in 0..MAX_ROUNDS {
@@ -161,7 +162,7 @@ fn between_hulls(scene: &Scene) -> Option<Separation> {
         let normal = (scene.frame.transpose() * axis.extend(0.0)).normalize_or_zero();
         let sides = facing_sides(scene, normal);
         let margin = margin_along(scene, normal, sides.each_ref().map(Farthest::height_bound));
-        if margin > scene.keep {
+        if margin > scene.min_gap {
             return Some(Separation { normal, margin });
         }
         let [p, q] = &sides;
@@ -183,7 +184,7 @@ fn between_hulls(scene: &Scene) -> Option<Separation> {
 /// Returns an error if the normal is not a unit vector orthogonal to the direction, or the claimed margin is not
 /// proven.
 pub(crate) fn verify_separation(
-    scene: &Scene,
+    scene: &PairFrame,
     separation: &Separation,
 ) -> Result<f64, CertificateError> {
     let normal = separation.normal;
@@ -191,17 +192,17 @@ pub(crate) fn verify_separation(
     if !unit || (normal.dot(scene.setting.direction) / scene.setting.length).abs() > UNIT_VECTOR {
         return Err(CertificateError::Normal { normal });
     }
-    let highest = |side: &Side| {
+    let highest = |side: &PlacedBody| {
         let local = side.matrix.transpose() * if side.moving { normal } else { -normal };
         let heights =
             (0..side.solid.vertices().len() as u32).map(|v| local.dot(side.offset_vertex(v)));
         heights.fold(f64::NEG_INFINITY, f64::max)
     };
     let reaches = [&scene.moving, &scene.fixed].map(highest);
-    // Nothing counts as a tie here.
+    // All vertices are compared here, so no error of ties remains.
     let proven = margin_along(scene, normal, reaches) + TIES * scene.noise;
     let claimed = separation.margin;
-    if claimed > scene.keep && claimed <= proven {
+    if claimed > scene.min_gap && claimed <= proven {
         Ok(proven)
     } else {
         Err(CertificateError::Bound { proven, claimed })
@@ -209,14 +210,14 @@ pub(crate) fn verify_separation(
 }
 
 /// Checks whether a plane with this normal certainly separates the bodies, with the moving body below.
-pub(crate) fn is_separating(scene: &Scene, normal: DVec3) -> bool {
+pub(crate) fn is_separating(scene: &PairFrame, normal: DVec3) -> bool {
     let [p, q] = facing_sides(scene, normal).map(|side| side.height_bound());
     normal.dot(scene.fixed.offset[0]) - q - p > HEIGHTS * scene.noise
 }
 
-/// Returns an upper bound of the coordinates of a body's vertices along a normal of the world, from the origin of its
-/// frame, up to the rounding error of [`HEIGHTS`].
-pub(crate) fn max_height_along(side: &Side, normal: DVec3) -> f64 {
+/// Returns an upper bound of the coordinates of an offset body's vertices along a normal of the world, relative to the
+/// origin of the body frame, up to the rounding error of [`HEIGHTS`].
+pub(crate) fn max_height_along(side: &PlacedBody, normal: DVec3) -> f64 {
     Farthest::new(side, normal).height_bound()
 }
 
@@ -224,12 +225,12 @@ pub(crate) fn max_height_along(side: &Side, normal: DVec3) -> f64 {
 type Simplex = (usize, [DVec2; 3]);
 
 /// Finds the farthest vertex of the moving body along a normal of the world, and of the fixed body against it.
-fn facing_sides<'s, 'a>(scene: &'s Scene<'a>, normal: DVec3) -> [Farthest<'s, 'a>; 2] {
+fn facing_sides<'s, 'a>(scene: &'s PairFrame<'a>, normal: DVec3) -> [Farthest<'s, 'a>; 2] {
     [Farthest::new(&scene.moving, normal), Farthest::new(&scene.fixed, -normal)]
 }
 
 /// Returns the margin along a normal, given the extents of the moving body along it, and of the fixed body against it.
-fn margin_along(scene: &Scene, normal: DVec3, [moving, fixed]: [f64; 2]) -> f64 {
+fn margin_along(scene: &PairFrame, normal: DVec3, [moving, fixed]: [f64; 2]) -> f64 {
     let fixed = normal.dot(scene.fixed.offset[0]) - fixed;
     fixed - moving - ROUNDING * scene.noise - closing_bound(&scene.setting, normal, scene.noise)
 }
@@ -246,7 +247,7 @@ const MAX_LEAVES: u32 = 64;
 
 /// The vertex of a body that is farthest along a normal of the world, from the tree.
 struct Farthest<'s, 'a> {
-    side: &'s Side<'a>,
+    side: &'s PlacedBody<'a>,
     /// The normal in the body frame.
     local: DVec3,
     /// The farthest visited vertex, and its height along the normal from the origin of the body frame.
@@ -259,7 +260,7 @@ struct Farthest<'s, 'a> {
 }
 
 impl<'s, 'a> Farthest<'s, 'a> {
-    fn new(side: &'s Side<'a>, normal: DVec3) -> Self {
+    fn new(side: &'s PlacedBody<'a>, normal: DVec3) -> Self {
         let mut search = Self {
             side,
             local: side.matrix.transpose() * normal,
@@ -299,11 +300,11 @@ impl<'s, 'a> Farthest<'s, 'a> {
             let node = &nodes[k as usize];
             let mut ends = node.bounds;
             if let Some(shrinking) = self.side.shrinking {
-                ends = shrinking.boxed(ends, self.side.amount, k as usize);
+                ends = shrinking.offset_box(ends, self.side.amount, k as usize);
             }
             self.local.dot(DVec3::select(self.local.cmpgt(DVec3::ZERO), ends.high, ends.low))
         };
-        let mut parts = node.children(at).map(|k| (bound(k), k));
+        let mut parts = node.child_positions(at).map(|k| (bound(k), k));
         if parts[1].0 > parts[0].0 {
             parts.swap(0, 1);
         }

@@ -14,8 +14,8 @@
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
 use super::projected::Projected;
-use super::scene::{Scene, Side};
-use crate::body::cuts::{Depths, Parts, depths};
+use super::scene::{PairFrame, PlacedBody};
+use crate::body::cuts::{Depths, NormalDecomposition, depth_table};
 use colltrans_convex::body::Aabb;
 
 /// Number of normals that are orthogonal to an axis of each box.
@@ -24,8 +24,8 @@ const EDGES: usize = 9;
 const AXES: [usize; 2] = [EDGES + 1, EDGES + 4];
 /// Number of normals of planes that bound gaps.
 const NORMALS: usize = 16;
-/// Position of the lines across the shadows of the axes, for the moving and the fixed body. Each line is a direction on
-/// both sides.
+/// Position of the lines across the shadows of the axes, for the moving and the fixed body. Each line counts as two
+/// opposite directions.
 const LINES: [usize; 2] = [NORMALS, NORMALS + 3];
 /// Number of directions without the reversed lines.
 const SHARED: usize = NORMALS + 6;
@@ -48,7 +48,7 @@ struct BodyAxes {
     /// Bound on rounding errors along each direction, plus the enlargement of the body.
     slack: [f64; SHARED],
     /// The cuts along each direction and their weights.
-    parts: [Parts; ALL],
+    parts: [NormalDecomposition; ALL],
     /// Position of the first axis of the other body.
     others: usize,
     /// Positions of the lines across the shadows of its own axes, and of the other body's.
@@ -56,10 +56,11 @@ struct BodyAxes {
 }
 
 impl BodyAxes {
-    fn new(side: &Side, all: &[DVec3; SHARED], noise: f64) -> Self {
+    fn new(side: &PlacedBody, all: &[DVec3; SHARED], noise: f64) -> Self {
         let turn = if side.moving { 1.0 } else { -1.0 };
         let local = all.map(|n| side.view.transpose() * (n * turn));
-        let parts = |k: usize| Parts::new(if k < SHARED { local[k] } else { -local[k - 6] });
+        let parts =
+            |k: usize| NormalDecomposition::new(if k < SHARED { local[k] } else { -local[k - 6] });
         let [own, other] = if side.moving { [0, 1] } else { [1, 0] };
         Self {
             local: [0, 1, 2].map(|axis| local.map(|n| n[axis])),
@@ -100,18 +101,18 @@ impl BodyAxes {
                 *r -= p.edge_support_reduction(depths);
             }
         }
-        reach[EDGES] -= self.parts[EDGES].gain(depths);
+        reach[EDGES] -= self.parts[EDGES].support_reduction(depths);
         for first in [self.others, other, other + 6] {
             for (r, p) in reach[first..first + 3].iter_mut().zip(&self.parts[first..first + 3]) {
-                *r -= p.gain(depths);
+                *r -= p.support_reduction(depths);
             }
         }
     }
 }
 
 impl SeparatingAxes {
-    pub(crate) fn new(scene: &Scene) -> Self {
-        let axes = |side: &Side| [side.view.x_axis, side.view.y_axis, side.view.z_axis];
+    pub(crate) fn new(scene: &PairFrame) -> Self {
+        let axes = |side: &PlacedBody| [side.view.x_axis, side.view.y_axis, side.view.z_axis];
         let (p, q) = (axes(&scene.moving), axes(&scene.fixed));
         let mut all = [DVec3::Z; SHARED];
         let edges = p.into_iter().flat_map(|a| q.map(|b| a.cross(b)));
@@ -130,14 +131,14 @@ impl SeparatingAxes {
 
     /// Computes the extents of a node along all directions.
     #[inline]
-    pub(crate) fn node_extents(&self, side: &Side, projected: &Projected) -> Reach {
+    pub(crate) fn node_extents(&self, side: &PlacedBody, projected: &Projected) -> Reach {
         let Aabb { low, high } = projected.local;
         let view = &self.0[usize::from(!side.moving)];
         let mut reach = [0.0; ALL];
         view.box_reach((low + high) * 0.5, (high - low) * 0.5, &mut reach);
         let node = &side.solid.nodes()[projected.node as usize];
         view.subtract_cuts(
-            &depths(&node.cuts, node.bounds.size(), side.max_displacement()),
+            &depth_table(&node.cuts, node.bounds.side_lengths(), side.max_displacement()),
             &mut reach,
         );
         Reach(reach)

@@ -16,18 +16,18 @@ use std::cmp::Ordering::{Equal, Greater, Less};
 use super::fan::Fan;
 use super::line::{self, Line, LineDirection};
 use super::overlap::{EdgeAxis, EdgeNeighbourhood};
-use super::scene::{Corner, Scene};
+use super::scene::{PairFrame, PlacedVertex};
 use super::triangle::Triangle;
 use crate::body::wedge::Ray;
 
 /// Returns the ends of a facet without area, equal for a point; `None` for any other facet.
-pub(super) fn segment_ends(triangle: &Triangle) -> Option<[Corner; 2]> {
+pub(super) fn segment_ends(triangle: &Triangle) -> Option<[PlacedVertex; 2]> {
     let thin = triangle.side.solid.is_without_area(triangle.index);
     thin.then_some([triangle.corners[0], triangle.corners[1]])
 }
 
 /// Checks whether two facets show an overlap; `None` if both have an area.
-pub(super) fn show_overlap(scene: &Scene, f: &Triangle, g: &Triangle) -> Option<bool> {
+pub(super) fn show_overlap(scene: &PairFrame, f: &Triangle, g: &Triangle) -> Option<bool> {
     match (segment_ends(f), segment_ends(g)) {
         (None, None) => None,
         (Some(segment), None) => Some(runs_into(scene, segment, g)),
@@ -36,7 +36,7 @@ pub(super) fn show_overlap(scene: &Scene, f: &Triangle, g: &Triangle) -> Option<
     }
 }
 
-fn runs_into(scene: &Scene, segment: [Corner; 2], facet: &Triangle) -> bool {
+fn runs_into(scene: &PairFrame, segment: [PlacedVertex; 2], facet: &Triangle) -> bool {
     if segment[0].local == segment[1].local {
         return false;
     }
@@ -49,59 +49,64 @@ fn runs_into(scene: &Scene, segment: [Corner; 2], facet: &Triangle) -> bool {
 }
 
 /// Checks case 1.
-fn runs_inside(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle) -> bool {
+fn runs_inside(scene: &PairFrame, [p, q]: &[PlacedVertex; 2], facet: &Triangle) -> bool {
     let [a, b, c] = &facet.corners;
-    let (from, to, outer) = match [p, q].map(|end| scene.outside(a, b, c, end)) {
+    let (from, to, outer) = match [p, q].map(|end| scene.side_of_plane(a, b, c, end)) {
         [Less, Less] => return false,
         [outer, Less] => (p, q, outer),
         [Less, outer] => (q, p, outer),
         _ => return false,
     };
-    let around = [[a, b], [b, c], [c, a]].map(|[u, v]| scene.outside(p, q, u, v));
+    let around = [[a, b], [b, c], [c, a]].map(|[u, v]| scene.side_of_plane(p, q, u, v));
     let is_met = !(around.contains(&Greater) && around.contains(&Less));
     let line = Line { from, way: LineDirection::To(to) };
     is_met && line::enters_body(scene, &line, facet.side, facet.index as u32, outer == Greater)
 }
 
 /// Checks case 2.
-fn passes_facet(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle) -> bool {
+fn passes_facet(scene: &PairFrame, [p, q]: &[PlacedVertex; 2], facet: &Triangle) -> bool {
     let [a, b, c] = &facet.corners;
-    let [x, y] = [p, q].map(|end| scene.outside(a, b, c, end));
+    let [x, y] = [p, q].map(|end| scene.side_of_plane(a, b, c, end));
     x != Equal && x == y.reverse() && {
-        let around = [[a, b], [b, c], [c, a]].map(|[u, v]| scene.outside(p, q, u, v));
+        let around = [[a, b], [b, c], [c, a]].map(|[u, v]| scene.side_of_plane(p, q, u, v));
         around[0] != Equal && around[1] == around[0] && around[2] == around[0]
     }
 }
 
 /// Checks case 3 for edge `k` of a facet.
-fn passes_edge(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle, k: usize) -> bool {
+fn passes_edge(scene: &PairFrame, [p, q]: &[PlacedVertex; 2], facet: &Triangle, k: usize) -> bool {
     let (a, b) = (&facet.corners[k], &facet.corners[(k + 1) % 3]);
     let Some(across) = facet.corner_across_edge(k) else { return false };
-    if scene.outside(a, b, p, q) != Equal {
+    if scene.side_of_plane(a, b, p, q) != Equal {
         return false;
     }
-    // An axis along which the plane of both has an area.
+    // An axis of the world along which the ends of the edge project strictly to opposite sides of the segment's line.
     let strictly = |axis: &usize| {
-        let [x, y] = [a, b].map(|end| scene.turn_about(*axis, p, q, end));
+        let [x, y] = [a, b].map(|end| scene.projected_orientation(*axis, p, q, end));
         x != Equal && x == y.reverse()
     };
     let Some(axis) = (0..3).find(strictly) else { return false };
-    let [x, y] = [p, q].map(|end| scene.turn_about(axis, a, b, end));
+    let [x, y] = [p, q].map(|end| scene.projected_orientation(axis, a, b, end));
     if x == Equal || x != y.reverse() {
         return false;
     }
-    let own = EdgeNeighbourhood::Bend([Ray::to(0), Ray::to(1)]);
+    let own = EdgeNeighbourhood::Bend([Ray::towards(0), Ray::towards(1)]);
     let points = [&across, &facet.corners[(k + 2) % 3], p, q];
     own.overlaps_around(
-        &EdgeNeighbourhood::Bend([Ray::to(2), Ray::to(3)]),
+        &EdgeNeighbourhood::Bend([Ray::towards(2), Ray::towards(3)]),
         &EdgeAxis { scene, p: a, q: b, points },
     )
 }
 
 /// Checks case 4 for corner `k` of a facet.
-fn passes_vertex(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle, k: usize) -> bool {
+fn passes_vertex(
+    scene: &PairFrame,
+    [p, q]: &[PlacedVertex; 2],
+    facet: &Triangle,
+    k: usize,
+) -> bool {
     let v = &facet.corners[k];
-    let is_end = |end: &Corner| (0..3).all(|axis| scene.axis_order(axis, v, end) == Equal);
+    let is_end = |end: &PlacedVertex| (0..3).all(|axis| scene.axis_order(axis, v, end) == Equal);
     if !is_on(scene, v, [p, q]) || is_end(p) || is_end(q) {
         return false;
     }
@@ -110,9 +115,9 @@ fn passes_vertex(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle, k: usize
 }
 
 /// Checks whether a point lies on a segment, ends included.
-fn is_on(scene: &Scene, point: &Corner, [p, q]: [&Corner; 2]) -> bool {
+fn is_on(scene: &PairFrame, point: &PlacedVertex, [p, q]: [&PlacedVertex; 2]) -> bool {
     (0..3).all(|axis| {
-        scene.turn_about(axis, p, q, point) == Equal
+        scene.projected_orientation(axis, p, q, point) == Equal
             && !are_strictly_one(scene.axis_order(axis, p, point), scene.axis_order(axis, q, point))
     })
 }
@@ -122,20 +127,24 @@ fn are_strictly_one(x: Ordering, y: Ordering) -> bool {
 }
 
 /// Checks whether two segments or points have a common point.
-pub(super) fn share_a_point(scene: &Scene, [p, q]: [Corner; 2], [r, s]: [Corner; 2]) -> bool {
+pub(super) fn share_a_point(
+    scene: &PairFrame,
+    [p, q]: [PlacedVertex; 2],
+    [r, s]: [PlacedVertex; 2],
+) -> bool {
     let boxed = (0..3).all(|axis| {
         let orders =
             [(&p, &r), (&p, &s), (&q, &r), (&q, &s)].map(|(a, b)| scene.axis_order(axis, a, b));
         !orders.iter().all(|&o| o == Less) && !orders.iter().all(|&o| o == Greater)
     });
-    let straddle = |a: &Corner, b: &Corner, c: &Corner, e: &Corner| {
+    let straddle = |a: &PlacedVertex, b: &PlacedVertex, c: &PlacedVertex, e: &PlacedVertex| {
         (0..3).all(|axis| {
-            let turn = |x: &Corner| scene.turn_about(axis, a, b, x);
+            let turn = |x: &PlacedVertex| scene.projected_orientation(axis, a, b, x);
             !are_strictly_one(turn(c), turn(e))
         })
     };
     boxed
-        && scene.outside(&p, &q, &r, &s) == Equal
+        && scene.side_of_plane(&p, &q, &r, &s) == Equal
         && straddle(&p, &q, &r, &s)
         && straddle(&r, &s, &p, &q)
 }

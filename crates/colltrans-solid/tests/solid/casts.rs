@@ -26,7 +26,7 @@ fn with_tolerance(cast: Cast<'_, Solid>, tolerance: f64) -> Cast<'_, Solid> {
 /// Of the shrunk bodies.
 fn distance(cast: &Cast<Solid>) -> f64 {
     match cast.clearance().expect("an answer") {
-        Clearance::Blocked { contact, .. } => contact.shrunk_distance.value,
+        Clearance::Blocked { contact, .. } => contact.offset_distance.value,
         other => panic!("{other:?}"),
     }
 }
@@ -78,7 +78,7 @@ fn a_bolt_whose_head_stops_at_seven() {
     let Bounded { value, lower, upper } = contact.translation;
     assert!((value - 7.0).abs() < 1e-12, "{value}");
     assert!(lower == distance && upper >= 7.0 && upper - lower < 1e-12, "{contact:?}");
-    let shrunk = contact.shrunk_distance;
+    let shrunk = contact.offset_distance;
     assert!((shrunk.value - 7.0 - fit).abs() < 1e-9, "the shrunk bodies meet later: {shrunk:?}");
     assert!(shrunk.upper - shrunk.lower < 1e-12, "{shrunk:?}");
     assert_eq!(contact.normal, DVec3::NEG_Z);
@@ -253,7 +253,7 @@ fn a_wall_all_round_a_cavity_passes_through_itself() {
         }
         // Grown, the wall only gets thicker.
         assert_eq!(thin.grown(0.25).expect("an amount").1.inverted, []);
-        assert!(thin.shrunk(0.6 * wall).expect("an amount").1.stuck.is_empty());
+        assert!(thin.shrunk(0.6 * wall).expect("an amount").1.fixed_vertices.is_empty());
     }
 }
 
@@ -447,7 +447,7 @@ fn a_zero_clearance_slide_of_100_000_facets() {
         assert!(ask(DVec3::X).is_free(), "{rotation}");
         assert!(ask(DVec3::Z).is_free(), "{rotation}");
         let Clearance::Blocked { contact, .. } = ask(DVec3::Y) else { panic!("{rotation}") };
-        assert!(contact.shrunk_distance.upper < 1e-11, "{contact:?}");
+        assert!(contact.offset_distance.upper < 1e-11, "{contact:?}");
     }
 }
 

@@ -48,7 +48,7 @@ fn assert_same(
     match (hulls, search) {
         (Clearance::Blocked { contact: a, .. }, Clearance::Blocked { contact: b, .. }) => {
             let width = |x: Bounded| x.upper - x.lower;
-            let (x, y) = (a.shrunk_distance, b.shrunk_distance);
+            let (x, y) = (a.offset_distance, b.offset_distance);
             assert!((x.value - y.value).abs() < 1e-12, "{what}: {x:?}, but {y:?}");
             assert!(x.lower <= y.upper && y.lower <= x.upper, "{what}: {x:?}, but {y:?}");
             assert!(width(x) < 1e-10, "{what}: {x:?}");
@@ -379,9 +379,10 @@ fn facets_of_dented_plates_stop_the_body() {
             cast.verify(&proof)
                 .unwrap_or_else(|fault| panic!("{dent} {round}: {fault} {answer:?}"));
             let Clearance::Blocked { contact, .. } = answer else { panic!("{answer:?}") };
-            let bounds = contact.shrunk_distance;
+            let bounds = contact.offset_distance;
             assert!(bounds.upper - bounds.lower < 1e-10, "{dent} {round}: {bounds:?}");
-            let stop = cast.stop_by(contact.triangles).expect("a stop").shrunk_distance;
+            let stop =
+                cast.contact_of_triangles(contact.triangles).expect("a stop").offset_distance;
             assert!(
                 (stop.value - bounds.value).abs() < 1e-11,
                 "{dent} {round}: {stop:?} {bounds:?}"

@@ -5,7 +5,7 @@ use colltrans_solid::proof::{Apart, Cover, DistanceCertificate};
 use colltrans_solid::{Solid, SolidNear, SolidPair};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::settings;
-use colltrans_testkit::oracle::solids::nearest::{MESHES, Seen, Setting};
+use colltrans_testkit::oracle::solids::nearest::{DistanceOutcome, MESHES, Setting};
 use colltrans_testkit::oracle::solids::settings::FAMILIES;
 use colltrans_testkit::oracle::solids::sheets;
 use colltrans_testkit::random::Random;
@@ -32,9 +32,12 @@ fn distances_agree_with_exact_arithmetic() {
             }
         }
     }
-    for (kind, least) in
-        [(Seen::Touching, 20), (Seen::Inside, 2), (Seen::Near, 20), (Seen::Apart, 20)]
-    {
+    for (kind, least) in [
+        (DistanceOutcome::Touching, 20),
+        (DistanceOutcome::Inside, 2),
+        (DistanceOutcome::Near, 20),
+        (DistanceOutcome::Apart, 20),
+    ] {
         assert!(seen[kind as usize] > cases(least), "{kind:?} only {} times", seen[kind as usize]);
     }
 }
@@ -214,7 +217,7 @@ fn poses_that_stretch_are_where_their_entries_say() {
         let poses = [pose(DVec3::X * (1.9 + 0.01 * f64::from(k))), pose(DVec3::ZERO)];
         let setting = Setting { solids: [a, b], poses };
         match setting.examine() {
-            Ok(seen) => apart += usize::from(seen == Seen::Apart),
+            Ok(seen) => apart += usize::from(seen == DistanceOutcome::Apart),
             Err(error) => panic!("{k}: {error}"),
         }
     }

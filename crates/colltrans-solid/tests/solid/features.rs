@@ -21,7 +21,7 @@ fn stopped(a: (&Solid, Pose), b: (&Solid, Pose), direction: DVec3) -> SolidConta
 
 /// Where the vertices of a feature are.
 fn places(feature: Feature, body: &Solid) -> Vec<DVec3> {
-    let own = feature.own_vertices(body).into_iter();
+    let own = feature.vertex_positions(body).into_iter();
     own.map(|v| body.vertices()[v.index()]).collect()
 }
 
@@ -146,7 +146,7 @@ fn facets_of_a_fine_cylinder_stay_facets() {
     assert!((ends[0] - ends[1]).length() == 1.0, "from end to end, not around: {ends:?}");
     let mut sizes: Vec<usize> = (0..round.facet_indices().len() as u32)
         .map(|f| Feature::Face(FaceId(f)))
-        .filter(|f| !f.own_vertices(&round).is_empty())
+        .filter(|f| !f.vertex_positions(&round).is_empty())
         .map(|f| f.vertices(&round).len())
         .collect();
     sizes.sort_unstable();
@@ -225,8 +225,8 @@ fn convex_bodies_are_named_by_their_input_too() {
     let features = contact.features(&cast);
     let Feature::Vertex(lowest) = features.moving else { panic!("{features:?}") };
     let there = tilted.transform_point(points[lowest.index()]);
-    assert!((there - contact.points(&cast).on_moving).length() < 1e-12, "{features:?}");
-    let own = features.moving.own_vertices(&cube);
+    assert!((there - contact.witness_points(&cast).on_moving).length() < 1e-12, "{features:?}");
+    let own = features.moving.vertex_positions(&cube);
     assert_eq!(cube.vertices()[own[0].index()], points[lowest.index()]);
     // The same bodies as solids name the same.
     let between = Cast::between(cube.at(tilted), table.at(Pose::IDENTITY), DVec3::NEG_Z);

@@ -35,7 +35,7 @@ fn solids(family: &str) -> u64 {
             match cast.clearance().expect("an answer") {
                 Clearance::Free(_) => hash.bits(0),
                 Clearance::Blocked { contact, .. } => {
-                    hash.number(contact.shrunk_distance.value);
+                    hash.number(contact.offset_distance.value);
                     hash.number(contact.translation.value);
                     hash.vector(contact.normal);
                 }
@@ -46,7 +46,7 @@ fn solids(family: &str) -> u64 {
             hash.number(cast.exit().map_or(-1.0, |exit| exit.value));
         }
     }
-    hash.value()
+    hash.finish()
 }
 
 #[test]

@@ -8,7 +8,7 @@ mod distance;
 mod features;
 mod fuzz_corpus;
 mod golden;
-mod keep;
+mod min_gap;
 mod oracle;
 mod points;
 mod proof;

@@ -3,14 +3,19 @@
 use std::collections::HashMap;
 
 use colltrans_testkit::cases;
-use colltrans_testkit::oracle::solids::settings::{FAMILIES, Seen, Setting};
+use colltrans_testkit::oracle::solids::settings::{FAMILIES, MotionOutcome, Setting};
 use colltrans_testkit::oracle::solids::sheets;
 
 /// Settings of all families together.
 const SETTINGS: u64 = 10_000;
 
-fn each_was_seen(seen: &HashMap<Seen, usize>) {
-    let least = [Seen::Overlapping, Seen::Free, Seen::BlockedNow, Seen::Blocked];
+fn each_was_seen(seen: &HashMap<MotionOutcome, usize>) {
+    let least = [
+        MotionOutcome::Overlapping,
+        MotionOutcome::Free,
+        MotionOutcome::BlockedNow,
+        MotionOutcome::Blocked,
+    ];
     for outcome in least {
         let count = seen.get(&outcome).copied().unwrap_or(0);
         assert!(count as u64 > cases(SETTINGS) / 40, "{outcome:?} only {count} times");
@@ -19,7 +24,7 @@ fn each_was_seen(seen: &HashMap<Seen, usize>) {
 
 #[test]
 fn bodies_of_cubes_agree_with_exact_arithmetic() {
-    let mut seen: HashMap<Seen, usize> = HashMap::new();
+    let mut seen: HashMap<MotionOutcome, usize> = HashMap::new();
     for family in FAMILIES {
         // Coordinates without exact values in `f64` take whole numbers for every tie.
         let slow = matches!(family, "rotated" | "mould");
@@ -36,7 +41,7 @@ fn bodies_of_cubes_agree_with_exact_arithmetic() {
 
 #[test]
 fn open_surfaces_agree_with_exact_arithmetic() {
-    let mut seen: HashMap<Seen, usize> = HashMap::new();
+    let mut seen: HashMap<MotionOutcome, usize> = HashMap::new();
     for family in sheets::FAMILIES {
         for seed in
             0..if family == "sheets-rotated" { cases(SETTINGS) / 20 } else { cases(SETTINGS) / 5 }

@@ -5,8 +5,8 @@
 //! random diagonals and sheared by a whole matrix, so that points hit vertices, run along edges and lie in planes of
 //! facets.
 
-use colltrans::motion::{FacetsMeeting, FacetsMet, Motion, MotionCast, MotionOutcome};
-use colltrans::{Among, Obstacles};
+use colltrans::motion::{FacetContact, FacetContactProof, Motion, MotionCast, MotionOutcome};
+use colltrans::{Obstacles, SceneQuery};
 use colltrans_convex::{
     Cast, Clearance, ConvexPolyhedron, Feature, InputVertex, Outcome, Pair, Pose, Within,
 };
@@ -533,28 +533,28 @@ fn distances_motions_and_scenes_take_points_and_segments() {
     // Scenes, either way.
     let mut scene = Obstacles::new();
     scene.insert(solid.clone(), still());
-    let among = Among::new(corner.at(still()), &scene).expect("a point among solids");
+    let among = SceneQuery::new(corner.at(still()), &scene).expect("a point among solids");
     let nearest = among.nearest().expect("an answer").expect("one");
     assert!(nearest.lower <= 20.0_f64.sqrt() && 20.0_f64.sqrt() < nearest.lower + 1e-12);
     let (_, proof) = among.certified_nearest().expect("an answer").expect("one");
     among.verify(&proof).expect("a proof that holds");
     let mut points = Obstacles::new();
     points.insert(corner, still());
-    let among = Among::new(solid.at(still()), &points).expect("a solid among points");
+    let among = SceneQuery::new(solid.at(still()), &points).expect("a solid among points");
     assert!(among.nearest().expect("an answer").is_some());
 }
 
 /// A point and a rod come around the origin from (-4, 0, 0) to a slab that begins at x = 0, in half a turn.
 fn motions_take_points_and_segments() {
-    let turn = Motion::turn(still(), DVec3::ZERO, DVec3::Z, -std::f64::consts::PI);
+    let turn = Motion::rotation_about(still(), DVec3::ZERO, DVec3::Z, -std::f64::consts::PI);
     let turn = turn.expect("a turn");
     let slab = ConvexPolyhedron::cuboid(DVec3::new(0.0, 3.0, -0.5), DVec3::new(1.0, 8.0, 0.5));
     let slab = Solid::from_convex(&slab.expect("a box")).expect("a solid");
-    let rest = Motion::still(still());
+    let rest = Motion::at_rest(still());
     // An edge of the rod passes through the face: that is proven.
     let rod = segment([-4, -1, 0], [-4, 1, 0]);
-    let cast = MotionCast::between(rod.along(&turn), slab.along(&rest)).expect("a cast");
-    let cast = cast.tolerating(0.0).expect("none");
+    let cast = MotionCast::between_any(rod.along(&turn), slab.with_motion(&rest)).expect("a cast");
+    let cast = cast.with_tolerance(0.0).expect("none");
     let found = cast.certified_first_contact().expect("an answer");
     let MotionOutcome::Contact(contact) = found else { panic!("no contact: {found:?}") };
     let right = 0.5 - 0.25_f64.atan() / std::f64::consts::PI;
@@ -566,12 +566,13 @@ fn motions_take_points_and_segments() {
     assert!(cast.clearance().is_ok());
     // A point has no edge that passes through one: a time is proven at which it is inside.
     let tip = point([-4, 0, 0]);
-    let back = Motion::turn(still(), DVec3::ZERO, DVec3::Z, std::f64::consts::PI).expect("a turn");
+    let back = Motion::rotation_about(still(), DVec3::ZERO, DVec3::Z, std::f64::consts::PI)
+        .expect("a turn");
     for moves in [true, false] {
         let cast = if moves {
-            MotionCast::between(tip.along(&turn), slab.along(&rest))
+            MotionCast::between_any(tip.along(&turn), slab.with_motion(&rest))
         } else {
-            MotionCast::between(slab.along(&back), tip.along(&rest))
+            MotionCast::between_any(slab.with_motion(&back), tip.along(&rest))
         };
         let cast = cast.expect("a cast");
         let found = cast.certified_first_contact().expect("an answer");
@@ -580,7 +581,7 @@ fn motions_take_points_and_segments() {
         assert!(contact.upper - contact.lower < 1e-11, "{contact:?}");
         assert_eq!(cast.verify(&contact.proof), Ok([contact.lower, contact.upper]));
         let meeting = contact.proof.meeting.expect("it is proven");
-        let forged = |change: &dyn Fn(&mut FacetsMeeting)| {
+        let forged = |change: &dyn Fn(&mut FacetContact)| {
             let mut proof = contact.proof.clone();
             change(proof.meeting.as_mut().expect("it is there"));
             assert!(cast.verify(&proof).is_err(), "{:?}", proof.meeting);
@@ -588,9 +589,13 @@ fn motions_take_points_and_segments() {
         forged(&|of| of.time = contact.lower);
         forged(&|of| of.triangles[usize::from(!moves)] = 1);
         let weights = [1.0, 0.0, 0.0];
-        forged(&|of| of.met = FacetsMet::Contained { moving: !moves, weights });
-        forged(&|of| of.met = FacetsMet::Contained { moving: moves, weights: [2.0, 0.0, 0.0] });
-        assert!(matches!(meeting.met, FacetsMet::Contained { moving, .. } if moving == moves));
+        forged(&|of| of.met = FacetContactProof::Contained { moving: !moves, weights });
+        forged(&|of| {
+            of.met = FacetContactProof::Contained { moving: moves, weights: [2.0, 0.0, 0.0] }
+        });
+        assert!(
+            matches!(meeting.met, FacetContactProof::Contained { moving, .. } if moving == moves)
+        );
     }
 }
 
@@ -613,7 +618,7 @@ fn is_well_inside(body: &Body, p: DVec3) -> bool {
 #[test]
 fn points_and_segments_that_turn_into_a_body_meet_it_in_proven_bounds() {
     let mut random = Random::new(5_204);
-    let rest = Motion::still(still());
+    let rest = Motion::at_rest(still());
     let (mut met, mut free, mut grazed) = (0, 0, 0);
     for _ in 0..cases(600) {
         let body = Body::random(&mut random, 2);
@@ -623,9 +628,10 @@ fn points_and_segments_that_turn_into_a_body_meet_it_in_proven_bounds() {
         let thin = if is_point || p == q { point(p) } else { segment(p, q) };
         let axis = random.pick(&[DVec3::X, DVec3::Y, DVec3::Z]);
         let about = float(body.place(small(&mut random, -2, 8)));
-        let turn = Motion::turn(still(), about, axis, 2.0).expect("a turn");
-        let cast = MotionCast::between(thin.along(&turn), solid.along(&rest)).expect("a cast");
-        let cast = cast.tolerating(0.0).expect("none");
+        let turn = Motion::rotation_about(still(), about, axis, 2.0).expect("a turn");
+        let cast =
+            MotionCast::between_any(thin.along(&turn), solid.with_motion(&rest)).expect("a cast");
+        let cast = cast.with_tolerance(0.0).expect("none");
         let place = |time: f64, share: f64| {
             let start = float(p).lerp(float(if is_point { p } else { q }), share);
             DQuat::from_axis_angle(axis, 2.0 * time) * (start - about) + about
@@ -806,7 +812,7 @@ fn a_cavity_that_touches_the_outside_stays_a_cavity() {
         let solid = Solid::from_mesh(&hollow.vertices, &faces).unwrap();
         let volume = solid.report().shells.iter().map(|shell| shell.volume).sum::<f64>();
         assert!((volume - (1728.0 - 32.0 / 3.0)).abs() < 1e-9, "{volume}");
-        assert!(solid.report().shells.iter().all(|shell| !shell.turned));
+        assert!(solid.report().shells.iter().all(|shell| !shell.reversed));
         let mut bodies = solid.bodies();
         bodies.dedup();
         assert_eq!(bodies, [0], "the cavity is in the block");

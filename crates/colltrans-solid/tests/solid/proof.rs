@@ -78,9 +78,9 @@ fn every_field_that_is_changed_is_refused() {
         ask.verify(&changed).expect_err("a changed proof")
     };
     assert!(matches!(refused(&|p| p.tolerance = 1e-3), CertificateError::OtherTolerance { .. }));
-    assert_eq!(refused(&|p| p.start = StartProof::Assumed), CertificateError::Start);
+    assert_eq!(refused(&|p| p.start = StartProof::Assumed), CertificateError::StartClaim);
     let overlapping = StartProof::Overlapping(Overlap::Facets(0, 0));
-    assert_eq!(refused(&|p| p.start = overlapping.clone()), CertificateError::Start);
+    assert_eq!(refused(&|p| p.start = overlapping.clone()), CertificateError::StartClaim);
     for inside in [Overlap::MovingInside(0), Overlap::FixedInside(0), Overlap::Facets(9_999, 0)] {
         refused(&|p| p.start = StartProof::Overlapping(inside));
     }

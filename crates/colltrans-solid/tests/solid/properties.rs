@@ -31,7 +31,7 @@ fn said(answer: &Clearance<Solid>) -> Said {
     match answer {
         Clearance::Overlapping(_) => Said::Overlapping,
         Clearance::Free(_) => Said::Free,
-        Clearance::Blocked { contact, .. } => Said::At(contact.shrunk_distance.value),
+        Clearance::Blocked { contact, .. } => Said::At(contact.offset_distance.value),
     }
 }
 
@@ -161,11 +161,11 @@ proptest! {
         let bodies = [solid(&setting.surfaces[0]), solid(&setting.surfaces[1])];
         let d = setting.direction;
         let ask_from = |t: f64| {
-            let start = setting.poses[0].translated(d * t).expect("in range");
+            let start = setting.poses[0].translated_by(d * t).expect("in range");
             let cast = Cast::new(bodies[0].at(start), bodies[1].at(setting.poses[1]), d);
             cast.and_then(|c| c.with_options(bare())).expect("choices")
         };
-        let stuck = |s: &Solid| !s.shrink_report(1e-9).stuck.is_empty();
+        let stuck = |s: &Solid| !s.shrink_report(1e-9).fixed_vertices.is_empty();
         prop_assume!(!stuck(&bodies[0]) && !stuck(&bodies[1]));
         let here = ask_from(0.0);
         if let Said::At(t) = said(&here.clearance().expect("an answer")) && t > 1e-9 {
@@ -189,12 +189,12 @@ proptest! {
             .and_then(|c| c.with_options(bare()))
             .expect("a direction");
         let shrunk = cast.with_tolerance(tolerance).expect("a tolerance").clearance().expect("an answer");
-        let stuck = [&a, &b].iter().any(|s| !s.shrink_report(tolerance / 2.0).stuck.is_empty());
+        let stuck = [&a, &b].iter().any(|s| !s.shrink_report(tolerance / 2.0).fixed_vertices.is_empty());
         if let (Said::At(t), Clearance::Blocked { distance, contact }) =
             (said(&cast.clearance().expect("an answer")), &shrunk)
         {
             // A vertex that stays leaves sloping facets around it, which are not inside the body.
-            let (place, shrunk) = (contact.translation, contact.shrunk_distance);
+            let (place, shrunk) = (contact.translation, contact.offset_distance);
             prop_assert!(stuck || shrunk.value >= t - 1e-11, "{shrunk:?} < {t}");
             for found in [place, shrunk] {
                 prop_assert!(found.lower <= found.value && found.value <= found.upper, "{found:?}");
@@ -238,7 +238,7 @@ proptest! {
         let forth = ask_at([a, b], [s, t], d);
         let back = ask_at([b, a], [t, s], -d);
         prop_assert!(agree(forth, back), "{forth:?} and {back:?}");
-        if a.report().count(ShellKind::Closed) == 0 {
+        if a.report().shell_count(ShellKind::Closed) == 0 {
             let facets: Vec<[u32; 3]> = a.triangles().iter().map(|&[p, q, r]| [p, r, q]).collect();
             let over = Solid::from_open_mesh(a.vertices(), &facets).expect("turned over");
             let turned = ask_at([&over, b], [s, t], d);

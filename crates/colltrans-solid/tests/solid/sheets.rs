@@ -230,7 +230,7 @@ fn scenes_with_names_turned() {
 
 #[test]
 fn classes_of_shells() {
-    let count = |solid: &Solid| ShellKind::ALL.map(|kind| solid.report().count(kind));
+    let count = |solid: &Solid| ShellKind::ALL.map(|kind| solid.report().shell_count(kind));
     let Mesh { vertices, faces: facets } = shapes::block([0.0; 3], [2.0; 3]);
     let closed = Solid::from_open_mesh(&vertices, &facets).expect("a box");
     assert_eq!(count(&closed), [1, 0, 0]);
@@ -290,7 +290,7 @@ fn sheets_are_neither_shrunk_nor_grown() {
     let body = Solid::from_pieces([&cube, &flag]).expect("both");
     let (smaller, report) = body.shrunk(0.25).expect("an amount");
     assert_eq!(smaller.bounds(), Aabb { low: DVec3::splat(0.25), high: v(8.0, 4.0, 8.0) });
-    assert!(report.stuck.is_empty() && report.inverted.is_empty(), "{report:?}");
+    assert!(report.fixed_vertices.is_empty() && report.inverted.is_empty(), "{report:?}");
     let (larger, _) = flag.grown(0.25).expect("an amount");
     assert_eq!(larger.bounds(), flag.bounds());
     // In one mesh they have corners in common, which part.
@@ -298,9 +298,9 @@ fn sheets_are_neither_shrunk_nor_grown() {
     vertices.extend([v(8.0, 0.0, 0.0), v(8.0, 0.0, 8.0)]);
     facets.push(vec![1, 8, 9]);
     let both = Solid::from_open_mesh(&vertices, &facets).expect("a cube with a flag");
-    assert_eq!(both.report().count(ShellKind::Closed), 1);
+    assert_eq!(both.report().shell_count(ShellKind::Closed), 1);
     let (smaller, report) = both.shrunk(0.25).expect("an amount");
-    assert!(report.stuck.is_empty(), "{report:?}");
+    assert!(report.fixed_vertices.is_empty(), "{report:?}");
     let blade = [[3.9, -1.0, 3.9], [3.9, -1.0, 3.0], [3.0, -1.0, 3.0], [3.0, -1.0, 3.9]];
     let at = |solid: &Solid| {
         let moving = sheet(blade, 1);
@@ -318,7 +318,7 @@ fn sheets_are_neither_shrunk_nor_grown() {
     let Clearance::Blocked { contact, .. } = down.clearance().expect("an answer") else {
         panic!("blocked")
     };
-    assert_eq!((contact.shrunk_distance.value, contact.translation.value), (2.25, 2.0));
+    assert_eq!((contact.offset_distance.value, contact.translation.value), (2.25, 2.0));
 }
 
 #[test]

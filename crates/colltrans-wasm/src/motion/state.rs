@@ -37,7 +37,7 @@ struct Request {
     fixed_motion: Option<Kind>,
     /// A minimum gap.
     #[serde(default)]
-    keep: f64,
+    min_gap: f64,
     /// For convex bodies a tolerated depth instead of a gap. If it is `None`, convex bodies have none, and
     /// solids use the tolerance that follows from their files.
     #[serde(default)]
@@ -137,11 +137,11 @@ impl Request {
         let query = if let (Part::Convex(p), Part::Convex(q)) = (moving, fixed) {
             let cast = MotionCast::new(p.body.along(moves), q.body.along(other));
             match self.tolerance {
-                Some(_) if self.keep > 0.0 => {
+                Some(_) if self.min_gap > 0.0 => {
                     return Err("a gap and a tolerance are both given; convex bodies accept only one of them".into());
                 }
                 Some(depth) => cast.and_then(|cast| cast.tolerating(depth)),
-                None => cast.and_then(|cast| cast.keeping(self.keep)),
+                None => cast.and_then(|cast| cast.keeping(self.min_gap)),
             }
             .map(Query::Convex)
         } else {
@@ -152,7 +152,7 @@ impl Request {
                     let (p, q) = (p.along(moves), fixed.solid()?.along(other));
                     between_motions(p, q, precisions, self.tolerance)
                 })
-                .and_then(|cast| cast.keeping(self.keep))
+                .and_then(|cast| cast.keeping(self.min_gap))
                 .map(Query::Solid)
         };
         query.map_err(|error| error.to_string())

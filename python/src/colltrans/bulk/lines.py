@@ -78,7 +78,7 @@ def _query(row: Any, reads: Reads) -> dict[str, Any]:
 
 
 def _plain(value: Any, name: str) -> Any:
-    """Returns a motion as the numbers of its screw; other values are returned unchanged."""
+    """Returns a motion as the 8 numbers of its screw; values of other columns are not changed."""
     if name not in MOTIONS:
         return value
     kind = next(iter(value)) if isinstance(value, dict) and len(value) == 1 else None

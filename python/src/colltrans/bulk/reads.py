@@ -13,8 +13,8 @@ LISTS = {
     **dict.fromkeys(POSES, (3, 7)),
     **dict.fromkeys(SCREWS, (8,)),
 }
-_OF_MOTIONS = (*POSES, *SCREWS, "keep", "tolerance")
-_OF_CASTS = ("direction", *POSES, "graze_tolerance", "keep")
+_OF_MOTIONS = (*POSES, *SCREWS, "min_gap", "tolerance")
+_OF_CASTS = ("direction", *POSES, "graze_tolerance", "min_gap")
 #: The columns that each question of convex bodies reads, besides the bodies and ``id``.
 OF_CONVEX: dict[str, tuple[str, ...]] = {
     "contact": _OF_CASTS,
@@ -29,7 +29,7 @@ OF_CONVEX: dict[str, tuple[str, ...]] = {
 }
 #: The columns of each question of solids, which lack some questions.
 OF_SOLIDS = {name: columns for name, columns in OF_CONVEX.items() if columns is not _OF_CASTS}
-OF_SOLIDS["clearance"] = ("direction", *POSES, "keep", "tolerance")
+OF_SOLIDS["clearance"] = ("direction", *POSES, "min_gap", "tolerance")
 #: Columns that would change an answer (``colltrans batch`` reads them): never kept unread.
 MEANT = {
     "query",
@@ -71,7 +71,7 @@ class Reads:
 
     @property
     def known(self) -> tuple[str, ...]:
-        """Returns the columns with a meaning, whether they are kept or not."""
+        """Returns ``id``, ``moving``, ``fixed`` and the columns that the question reads."""
         return ("id", *SIDES, *self.columns)
 
     @property

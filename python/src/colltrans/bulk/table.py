@@ -94,10 +94,10 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
     ----------
     queries : pyarrow.Table or pyarrow.RecordBatch
         Columns ``moving`` and ``fixed`` (keys of bodies), ``direction`` (3 numbers), and optionally
-        ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance``, ``keep`` and ``id``.
+        ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance``, ``min_gap`` and ``id``.
         *distance*, *depth* and *within* have no ``direction``; *within* has ``length``. *motion*
         and *motion_clearance* have ``moving_screw``, ``fixed_screw`` or both, with 8 numbers each
-        (point, axis, angle in radians, rise), and optionally ``keep`` or ``tolerance``. A clearance
+        (point, axis, angle in radians, rise), and optionally ``min_gap`` or ``tolerance``. A clearance
         of solids has ``tolerance`` instead of ``graze_tolerance``; *directions* may have it.
     bodies : Bodies
     options : Options
@@ -155,7 +155,7 @@ def _answers(queries: Any, bodies: Bodies, options: Options) -> Table[Any]:
         if bodies.solids:
             return _solid_clearances(queries, sides, arguments, options)
         arguments["solver"] = options.solver
-        for name in {"graze_tolerance", "keep"} & set(names):
+        for name in {"graze_tolerance", "min_gap"} & set(names):
             arguments[name] = _numbers_of(queries, name, 0.0)
     elif options.question == "directions" and "tolerance" in names:
         arguments["tolerance"] = _numbers_of(queries, "tolerance", np.nan)
@@ -177,7 +177,7 @@ def _motion(queries: Any) -> dict[str, Any]:
         numbers = {"point": table[:, :3], "axis": table[:, 3:6]}
         numbers |= {"radians": table[:, 6], "rise": table[:, 7]}
         found[name.replace("screw", "motion")] = {"screw": numbers}
-    for name, missing in {"keep": 0.0, "tolerance": np.nan}.items():
+    for name, missing in {"min_gap": 0.0, "tolerance": np.nan}.items():
         if name in names:
             found[name] = _numbers_of(queries, name, missing)
     return found
@@ -194,7 +194,7 @@ def _solid_clearances(
         direction,
         (arguments.get("moving_pose"), arguments.get("fixed_pose")),
         (arguments["moving_index"], arguments["fixed_index"]),
-        keep=_numbers_of(queries, "keep", 0.0) if "keep" in names else 0.0,
+        min_gap=_numbers_of(queries, "min_gap", 0.0) if "min_gap" in names else 0.0,
         tolerance=_numbers_of(queries, "tolerance", np.nan) if "tolerance" in names else None,
         ignore_start_overlaps=False,
     )

@@ -80,7 +80,7 @@ fn brought_near(moving: Placed, fixed: Placed, gap: f64) -> Option<Pose> {
     let exact = distance_of_bodies(moving, fixed);
     (!exact.intersects()).then(|| {
         let shortest = exact.shortest;
-        moving.1.translated(shortest - shortest.normalize() * gap).unwrap()
+        moving.1.translated_by(shortest - shortest.normalize() * gap).unwrap()
     })
 }
 
@@ -202,8 +202,8 @@ fn common_displacement_costs_no_accuracy() {
     for case in 0..100 {
         let (p, q) = (cloud(&mut rng, 1.0), cloud(&mut rng, 1.0));
         let far = rng.grid(-9, 9) * 2.0_f64.powi(20);
-        let at = pose(&mut rng, 2.0).translated(far).unwrap();
-        let other = pose(&mut rng, 0.0).translated(far).unwrap();
+        let at = pose(&mut rng, 2.0).translated_by(far).unwrap();
+        let other = pose(&mut rng, 0.0).translated_by(far).unwrap();
         check_from_scratch(&format!("case {case}"), (&p, &at), (&q, &other));
     }
 }

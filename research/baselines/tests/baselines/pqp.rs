@@ -287,7 +287,7 @@ fn common_displacement_costs_no_accuracy() {
     let cube = Soup::of_polyhedron(&body(&cuboid(DVec3::ONE).vertices));
     for displacement in [0.0, 1e6, 1e12] {
         let fixed_at = Pose::from_translation(DVec3::splat(displacement)).unwrap();
-        let at = fixed_at.translated(DVec3::new(0.0, 3.0, 4.0)).unwrap();
+        let at = fixed_at.translated_by(DVec3::new(0.0, 3.0, 4.0)).unwrap();
         let offset = at.translation() - fixed_at.translation();
         let truth = (offset.y - 2.0).hypot(offset.z - 2.0);
         let answer = Pqp::new(&cube, &cube).distance(&at, &fixed_at);

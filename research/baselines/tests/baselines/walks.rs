@@ -33,7 +33,7 @@ impl Placed {
     pub fn at_gap(&self, gap: f64) -> Self {
         let exact = self.exact();
         let share = 1.0 - gap / exact.to_f64();
-        let moving_pose = self.moving_pose.translated(exact.shortest * share).unwrap();
+        let moving_pose = self.moving_pose.translated_by(exact.shortest * share).unwrap();
         Self { name: format!("{} at {gap:e}", self.name), moving_pose, ..self.clone() }
     }
 

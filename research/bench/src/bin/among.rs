@@ -9,10 +9,10 @@
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use colltrans::{Among, ConvexPolyhedron, ObstacleId, Obstacles, Pose};
+use colltrans::{ConvexPolyhedron, ObstacleId, Obstacles, Pose, SceneQuery};
 use colltrans_bench::harness::{self, Run};
 use colltrans_bench::parry::{self, ParrySetting};
-use colltrans_bench::times::{Beside, Clock, Times};
+use colltrans_bench::times::{Clock, Comparison, Times};
 use colltrans_testkit::random::Random;
 use glam::DVec3;
 use parry3d_f64::shape::{Compound, Cuboid};
@@ -137,25 +137,30 @@ struct QueryRunner<'a> {
 
 impl QueryRunner<'_> {
     /// Measures nearest bodies and casts in both libraries.
-    fn beside(&mut self, obstacles: &Obstacles, compound: &Compound, count: usize) -> [Beside; 2] {
-        let [mut nearest, mut casts] = <[Beside; 2]>::default();
+    fn beside(
+        &mut self,
+        obstacles: &Obstacles,
+        compound: &Compound,
+        count: usize,
+    ) -> [Comparison; 2] {
+        let [mut nearest, mut casts] = <[Comparison; 2]>::default();
         let (shape, half) = (&self.scene.shapes[0], self.scene.halves[0]);
-        let cuboid = Cuboid::new(parry::vector(half));
+        let cuboid = Cuboid::new(parry::convert_vector(half));
         for _ in 0..count {
             let pose = random_pose(self.scene.side, self.random);
             let direction = self.random.direction();
-            let setting = ParrySetting::placed([&pose, &Pose::IDENTITY], direction);
-            let (ours, other) = nearest.ask(
+            let setting = ParrySetting::from_poses([&pose, &Pose::IDENTITY], direction);
+            let (ours, other) = nearest.compare_query(
                 self.clock,
-                || Among::new(shape.at(pose), obstacles).and_then(|a| a.nearest()),
+                || SceneQuery::new(shape.at(pose), obstacles).and_then(|a| a.nearest()),
                 || setting.distance(&cuboid, compound),
             );
             let ours = ours.expect("an answer").expect("there are some");
             let is_off = |x: f64| x < ours.lower - 1e-6 || x > ours.distance.upper() + 1e-6;
             self.wrong += u32::from(other.is_none_or(is_off));
-            let (ours, _) = casts.ask(
+            let (ours, _) = casts.compare_query(
                 self.clock,
-                || Among::new(shape.at(pose), obstacles).and_then(|a| a.clearance(direction)),
+                || SceneQuery::new(shape.at(pose), obstacles).and_then(|a| a.clearance(direction)),
                 || setting.cast(&cuboid, compound),
             );
             assert!(ours.is_ok(), "an answer");
@@ -164,12 +169,17 @@ impl QueryRunner<'_> {
     }
 
     /// Returns the median time of a query.
-    fn median(&mut self, count: usize, obstacles: &Obstacles, ask: impl Fn(&Among) -> bool) -> f64 {
+    fn median(
+        &mut self,
+        count: usize,
+        obstacles: &Obstacles,
+        ask: impl Fn(&SceneQuery) -> bool,
+    ) -> f64 {
         let mut times = Times::default();
         for _ in 0..count {
             let pose = random_pose(self.scene.side, self.random);
             let shape = &self.scene.shapes[0];
-            let question = || Among::new(shape.at(pose), obstacles).is_ok_and(|a| ask(&a));
+            let question = || SceneQuery::new(shape.at(pose), obstacles).is_ok_and(|a| ask(&a));
             let (answered, spent) = self.clock.time(question);
             assert!(answered, "an answer");
             times.add(spent);
@@ -185,7 +195,7 @@ impl QueryRunner<'_> {
                 let id = ids[self.random.index(ids.len())];
                 let pose = obstacles.get(id).expect("it is there").1;
                 let by = self.random.vector() * 0.1;
-                let near = pose.translated(by).expect("a pose");
+                let near = pose.translated_by(by).expect("a pose");
                 (id, if k % 2 == 0 { near } else { random_pose(self.scene.side, self.random) })
             })
             .collect();

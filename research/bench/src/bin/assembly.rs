@@ -5,12 +5,12 @@ use std::process::ExitCode;
 
 use clap::Args;
 use colltrans::solid::StartOverlap;
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
-use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::candidates::{CandidateOptions, find_candidates};
+use colltrans_assembly::liaisons::find_liaisons;
+use colltrans_assembly::matrix::ContactMatrix;
 use colltrans_assembly::plan::{PlanOptions, disassemble};
-use colltrans_assembly::rooms::rooms;
 use colltrans_assembly::sphere::Sphere;
+use colltrans_assembly::travel::travels_of_parts;
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch};
 use colltrans_assembly_io::read::{ReadOptions, read};
 use colltrans_bench::harness::{self, Failure};
@@ -79,18 +79,19 @@ fn measure_assembly(
     let (bodies, ready) = clock.time(|| Bodies::new(assembly, Fit::Tolerance(tolerance)));
     let bodies = bodies?;
     let sphere = Sphere::with_directions(directions).directions;
-    let (found, rooms_ns) = clock.time(|| rooms(&bodies, &sphere, StartOverlap::Ignore, watch));
+    let (found, rooms_ns) =
+        clock.time(|| travels_of_parts(&bodies, &sphere, StartOverlap::Ignore, watch));
     found?;
     let plan = || -> Result<_, Failure> {
-        let touching = liaisons(&bodies, watch)?;
-        let found = candidates(&bodies, &touching, &Choice::default())?;
+        let touching = find_liaisons(&bodies, watch)?;
+        let found = find_candidates(&bodies, &touching, &CandidateOptions::default())?;
         let all = vec![true; bodies.len()];
         let start = StartOverlap::Refuse;
-        let matrix = Matrix::new(&bodies, &found.directions(), &all, start, watch)?;
+        let matrix = ContactMatrix::new(&bodies, &found.directions(), &all, start, watch)?;
         Ok(disassemble(&bodies, &matrix, &found.finer, PlanOptions::default(), watch)?)
     };
     let (plan, plan_ns) = clock.time(plan);
-    let facets: usize = assembly.parts().iter().map(Part::facets).sum();
+    let facets: usize = assembly.parts().iter().map(Part::facet_count).sum();
     Ok(json!({
         "series": series, "parts": bodies.len(), "facets": facets, "directions": sphere.len(),
         "ready_s": ready / 1e9, "rooms_s": rooms_ns / 1e9, "plan_s": plan_ns / 1e9,

@@ -12,7 +12,7 @@ use colltrans::{
     BuildError, Cast, ConvexPolyhedron, FixedRotations, Outcome, Pose, QueryError, StartedFrom,
     Tracker,
 };
-use colltrans_bench::harness::{self, Run, naming};
+use colltrans_bench::harness::{self, Run, with_name};
 use colltrans_bench::shapes::Shape;
 use colltrans_testkit::random::Random;
 use glam::DVec3;
@@ -100,7 +100,7 @@ fn main() -> ExitCode {
         }
         sets.extend([CastSet::EdgeOnFacet, CastSet::Tied].map(|set| (set, Shape::Box, 8)));
         for (set, shape, n) in sets {
-            let failed = naming(format!("{} of {n} vertices", shape.name()));
+            let failed = with_name(format!("{} of {n} vertices", shape.name()));
             run.add(measure_set(set, shape, n, run).map_err(failed)?);
         }
         Ok(())
@@ -131,7 +131,7 @@ fn measure_set(set: CastSet, shape: Shape, n: usize, run: &Run) -> Result<Value,
     let (mut make, mut map) = (f64::INFINITY, f64::INFINITY);
     let made = || FixedRotations::new(p.at(casts[0].0), q.at(world));
     let rotations = made();
-    let along = || rotations.along(casts[0].1).expect("a direction");
+    let along = || rotations.for_direction(casts[0].1).expect("a direction");
     let approach = along();
     let mut least = [f64::INFINITY; CONTESTANTS.len()];
     let mut answers: [Vec<Result<Outcome, QueryError>>; CONTESTANTS.len()] = Default::default();

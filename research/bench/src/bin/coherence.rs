@@ -7,10 +7,10 @@
 use std::process::ExitCode;
 
 use colltrans::{BuildError, Focus, Options, Outcome, QueryError, Solver, Tracker, cta};
-use colltrans_bench::harness::{self, Run, naming};
-use colltrans_bench::parry::Scale;
-use colltrans_bench::shapes::{Shape, body};
-use colltrans_bench::times::{Block, Measured, blocks, in_rotation};
+use colltrans_bench::harness::{self, Run, with_name};
+use colltrans_bench::parry::ReferenceCasts;
+use colltrans_bench::shapes::{Shape, body_from_mesh};
+use colltrans_bench::times::{Block, SolverFigures, blocks, measure_in_turns};
 use colltrans_lab::settings::{Meeting, Setting};
 use colltrans_lab::shapes::Bodies;
 use colltrans_testkit::shapes::{even_rings, ring_sphere};
@@ -77,7 +77,7 @@ fn main() -> ExitCode {
     let about = "Compares trackers with casts from scratch on the same sequences; prints tables";
     harness::run("coherence", about, |run, (): &()| {
         for n in run.sizes(&SIZES) {
-            measure_size(n, run).map_err(naming(format!("ellipsoids with {n} vertices")))?;
+            measure_size(n, run).map_err(with_name(format!("ellipsoids with {n} vertices")))?;
         }
         Ok(())
     })
@@ -114,11 +114,11 @@ fn measure_size(n: usize, run: &mut Run) -> Result<(), BuildError> {
     let mut pair = |n| Shape::Ellipsoid.pair(n, &mut random).map(Bodies::new);
     let bodies = [pair(n)?, pair(n)?];
     let [around, rings] = even_rings(n);
-    let sphere = body(&ring_sphere(around, rings))?;
+    let sphere = body_from_mesh(&ring_sphere(around, rings))?;
     let spheres = [Bodies::new([sphere.clone(), sphere])];
     let small = pair(8)?;
     let count = run.choose(12, 60);
-    let scale = Scale::new(&small, LENGTH, &mut random);
+    let scale = ReferenceCasts::new(&small, LENGTH, &mut random);
     begin_table(run);
     let mut add = |name: &str, sequences: &[Block]| follow_all(n, name, sequences, &scale, run);
     for (name, meeting) in
@@ -143,9 +143,9 @@ fn measure_size(n: usize, run: &mut Run) -> Result<(), BuildError> {
 }
 
 /// Measures every solver on every sequence, and adds the row.
-fn follow_all(n: usize, name: &str, sequences: &[Block], scale: &Scale, run: &mut Run) {
+fn follow_all(n: usize, name: &str, sequences: &[Block], scale: &ReferenceCasts, run: &mut Run) {
     let mut differences = 0;
-    let (measured, parry) = in_rotation::<Vec<_>, { COMPARED.len() }>(
+    let (measured, parry) = measure_in_turns::<Vec<_>, { COMPARED.len() }>(
         sequences,
         scale,
         |who, (bodies, sequence), measured| {
@@ -167,7 +167,7 @@ fn follow_all(n: usize, name: &str, sequences: &[Block], scale: &Scale, run: &mu
 
 /// Measures a solver on a sequence.
 fn follow_sequence(
-    measured: &mut Measured,
+    measured: &mut SolverFigures,
     compared: &ComparedSolver,
     bodies: &Bodies,
     sequence: &[Setting],
@@ -189,7 +189,7 @@ fn follow_sequence(
                 tracker.first_contact(&cast)
             }
         });
-        measured.note(spent, &outcome);
+        measured.add_outcome(spent, &outcome);
         outcomes.push(outcome);
     }
     outcomes

@@ -13,7 +13,7 @@ use colltrans::{ConvexPolyhedron, Pair, Pose, Tracker};
 use colltrans_bench::harness::{self, Run};
 use colltrans_bench::parry::{self, ParrySetting};
 use colltrans_bench::shapes::Shape;
-use colltrans_bench::times::{Beside, Clock, Times};
+use colltrans_bench::times::{Clock, Comparison, Times};
 use colltrans_testkit::oracle::scene::size;
 use colltrans_testkit::random::Random;
 use glam::{DQuat, DVec3};
@@ -61,22 +61,22 @@ fn measure_row(n: usize, gap: f64, run: &Run, clock: Clock) -> Value {
         .collect();
     let theirs: Vec<_> = pairs
         .iter()
-        .map(|pair| pair.each_ref().map(|one| parry::body(one).expect("a body of parry's")))
+        .map(|pair| pair.each_ref().map(|one| parry::convert_body(one).expect("a body of parry's")))
         .collect();
-    let (mut times, mut coherent) = (Beside::default(), Times::default());
+    let (mut times, mut coherent) = (Comparison::default(), Times::default());
     let (mut wrong, mut widest) = (0_u32, 0.0_f64);
     for index in 0..run.choose(200, 1_000) {
         let which = index % pairs.len();
         let ([p, q], [x, y]) = (&pairs[which], &theirs[which]);
         let Some([a, b]) = poses_at_gap(p, q, gap, &mut random) else { continue };
-        let setting = ParrySetting::placed([&a, &b], DVec3::X);
+        let setting = ParrySetting::from_poses([&a, &b], DVec3::X);
         let pair = Pair::new(p.at(a), q.at(b)).expect("a pair");
         let parry = || if gap > 0.0 { setting.distance(x, y) } else { setting.depth(x, y) };
         let us = || {
             let bounds = |d: colltrans::Distance| d.bounds();
             if gap > 0.0 { pair.distance().map(bounds) } else { pair.depth().map(|d| d.bounds()) }
         };
-        let (mine, other) = times.ask(clock, us, parry);
+        let (mine, other) = times.compare_query(clock, us, parry);
         let [lower, upper] = mine.expect("an answer");
         wrong +=
             u32::from(other.is_none_or(|other| (other - lower).abs() > WRONG_SHARE * gap.abs()));
@@ -118,7 +118,7 @@ fn poses_at_gap(
     let a = Pose::new(random.rotation(), DVec3::ZERO).ok()?;
     let b = Pose::new(random.rotation(), far).ok()?;
     let distance = Pair::new(p.at(a), q.at(b)).ok()?.distance().ok()?;
-    let moved = a.translated(distance.normal? * (distance.lower - gap)).ok()?;
+    let moved = a.translated_by(distance.normal? * (distance.lower - gap)).ok()?;
     Some([moved, b])
 }
 

@@ -7,9 +7,9 @@ use std::hint::black_box;
 use std::process::ExitCode;
 
 use colltrans::{BuildError, ConvexPolyhedron};
-use colltrans_bench::harness::{self, Run, naming};
+use colltrans_bench::harness::{self, Run, with_name};
 use colltrans_bench::shapes::Shape;
-use colltrans_bench::times::{Beside, Clock};
+use colltrans_bench::times::{Clock, Comparison};
 use glam::DVec3;
 use serde_json::{Value, json};
 
@@ -25,7 +25,7 @@ fn main() -> ExitCode {
         run.table(legend, columns);
         for n in run.sizes(&SIZES) {
             for shape in [Shape::RandomHull, Shape::Ellipsoid] {
-                let failed = naming(format!("{} with {n} vertices", shape.name()));
+                let failed = with_name(format!("{} with {n} vertices", shape.name()));
                 run.add(measure_sections(shape, n, run).map_err(failed)?);
             }
         }
@@ -41,7 +41,7 @@ fn measure_sections(shape: Shape, n: usize, run: &Run) -> Result<Value, BuildErr
     let without = per_vertex();
     body.prepare_sections();
     let with = per_vertex();
-    let mut times = Beside::default();
+    let mut times = Comparison::default();
     for _ in 0..run.choose(5, 15) {
         let [plain, sections] = [false, true].map(|sections| build(&corners, sections));
         times.add(plain, sections);

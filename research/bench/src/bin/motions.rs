@@ -16,7 +16,7 @@ use colltrans::{ConvexPolyhedron, Pose, Solid};
 use colltrans_bench::harness::{self, Run};
 use colltrans_bench::parry::{self, Spin};
 use colltrans_bench::shapes::Shape;
-use colltrans_bench::times::{Beside, Clock};
+use colltrans_bench::times::{Clock, Comparison};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::Mesh;
 use colltrans_testkit::solids::thread;
@@ -96,7 +96,7 @@ fn measure_bolts(run: &mut Run) {
     for (name, factor) in [("its pitch", 1.0), ("5 % wrong", 0.95), ("no rise", 0.0)] {
         let (here, rise) = (Pose::IDENTITY, 0.5 * factor);
         let turn = Motion::screw(here, DVec3::ZERO, DVec3::Z, TAU, rise).expect("a motion");
-        let cast = MotionCast::new(bolt.along(&turn), nut.at(here)).expect("a cast");
+        let cast = MotionCast::new(bolt.with_motion(&turn), nut.at(here)).expect("a cast");
         let asked = (0..5).map(|_| clock.time(|| cast.first_contact()));
         let (found, ours) = asked.min_by(|a, b| a.1.total_cmp(&b.1)).expect("five answers");
         let found = found.expect("an answer");
@@ -119,18 +119,18 @@ fn measure_bolts(run: &mut Run) {
 /// Measures a family.
 fn measure_row(name: &str, run: &Run, draw: impl Fn(&mut Random) -> Option<Turning>) -> Value {
     let mut random = run.random(&[name.len() as u64]);
-    let (clock, mut times) = (Clock::new(1), Beside::default());
+    let (clock, mut times) = (Clock::new(1), Comparison::default());
     let (mut looks, mut widths) = (Vec::new(), Vec::new());
     let [mut missed, mut late, mut wrongly] = [0_u32; 3];
     for turn in 0..run.choose(60, 400) {
         let Some(turning) = draw(&mut random) else { continue };
         let Turning { bodies: [p, q], start, center, velocity, spin, there } = &turning;
-        let [Some(a), Some(b)] = [p, q].map(parry::body) else { continue };
-        let motion = Motion::thrown(*start, *center, *velocity, *spin).expect("a motion");
+        let [Some(a), Some(b)] = [p, q].map(parry::convert_body) else { continue };
+        let motion = Motion::free_flight(*start, *center, *velocity, *spin).expect("a motion");
         let cast = MotionCast::new(p.along(&motion), q.at(*there)).expect("a cast");
         let spin = Spin::new(start, *center, *velocity, *spin, there);
         let ((mine, ours), (other, theirs)) =
-            clock.both(turn, || cast.first_contact(), || spin.cast(&a, &b));
+            clock.time_both(turn, || cast.first_contact(), || spin.cast(&a, &b));
         let (bounds, steps) = match mine.expect("an answer") {
             MotionOutcome::Contact(found) => (Some([found.lower, found.upper]), found.steps),
             MotionOutcome::Free(free) => (None, free.steps),

@@ -11,10 +11,10 @@ use std::process::ExitCode;
 
 use clap::Args;
 use colltrans::{BuildError, Focus, Options, Solver, Tracker, cta, observe};
-use colltrans_bench::harness::{self, Run, merged, naming};
-use colltrans_bench::parry::Scale;
-use colltrans_bench::shapes::{Shape, body};
-use colltrans_bench::times::{Block, Measured, Times, blocks, in_rotation};
+use colltrans_bench::harness::{self, Run, merge_objects, with_name};
+use colltrans_bench::parry::ReferenceCasts;
+use colltrans_bench::shapes::{Shape, body_from_mesh};
+use colltrans_bench::times::{Block, SolverFigures, Times, blocks, measure_in_turns};
 use colltrans_lab::settings::{Meeting, Setting};
 use colltrans_lab::shapes::Bodies;
 use colltrans_testkit::random::Random;
@@ -100,7 +100,7 @@ impl BodyKind {
                 let around = around.round();
                 let rings = (n as f64 / around).round();
                 let axes = DVec3::from_array([0; 3].map(|_| random.range(0.6, 1.4)));
-                body(&ring_sphere(around as u32, rings as u32).mapped(|v| v * axes))
+                body_from_mesh(&ring_sphere(around as u32, rings as u32).mapped(|v| v * axes))
             }
             Self::Other(shape) => shape.draw(n, random),
         };
@@ -114,7 +114,7 @@ fn main() -> ExitCode {
     harness::run("paper", about, |run, own: &OwnArguments| {
         for n in run.sizes(&SIZES) {
             measure_size(n, !own.no_focus, run)
-                .map_err(naming(format!("bodies with {n} vertices")))?;
+                .map_err(with_name(format!("bodies with {n} vertices")))?;
         }
         Ok(())
     })
@@ -142,7 +142,7 @@ fn declare_columns(names: &[&str]) -> String {
 fn measure_size(n: usize, focus: bool, run: &mut Run) -> Result<(), BuildError> {
     let mut random = run.random(&[n as u64]);
     let small = Bodies::new(Shape::Ellipsoid.pair(8, &mut random)?);
-    let scale = Scale::new(&small, BLOCK, &mut random);
+    let scale = ReferenceCasts::new(&small, BLOCK, &mut random);
     let count = run.choose(200, 1000);
     let legend = "\nmedian ns over portal's on the colliding settings; planar problems and exchanges on \
          average; parry's median ns at 8 vertices";
@@ -158,7 +158,8 @@ fn measure_size(n: usize, focus: bool, run: &mut Run) -> Result<(), BuildError> 
             let mut draw = |bodies: &Bodies| Setting::draw(bodies, meeting, &mut random);
             let blocks =
                 blocks(&bodies, count / BLOCK, |bodies| (0..BLOCK).map(|_| draw(bodies)).collect());
-            let (measured, parry) = in_rotation(&blocks, &scale, answer_twice, |_: &[(); 4]| ());
+            let (measured, parry) =
+                measure_in_turns(&blocks, &scale, answer_twice, |_: &[(); 4]| ());
             let unit = *unit.get_or_insert(measured[0].times.median());
             let name = format!("{}, {name}", kind.name());
             run.add(solver_row(
@@ -179,7 +180,7 @@ fn measure_size(n: usize, focus: bool, run: &mut Run) -> Result<(), BuildError> 
                 Setting::sequence(bodies, Meeting::Colliding, change, LENGTH, &mut random)
             });
             let (measured, parry) =
-                in_rotation(&sequences, &scale, follow_sequence, |_: &[(); 3]| ());
+                measure_in_turns(&sequences, &scale, follow_sequence, |_: &[(); 3]| ());
             let name = format!("{}, change {:.4} %", kind.name(), 100.0 * change);
             let (unit, phases) = (unit.unwrap_or(f64::NAN), measure_phases(&sequences, true));
             run.add(solver_row(&name, n, (&followed, &measured), unit, &parry, &phases));
@@ -192,15 +193,14 @@ fn measure_size(n: usize, focus: bool, run: &mut Run) -> Result<(), BuildError> 
 fn solver_row(
     name: &str,
     n: usize,
-    (names, measured): (&[&str], &[Measured]),
+    (names, measured): (&[&str], &[SolverFigures]),
     unit: f64,
     parry: &Times,
     phases: &Value,
 ) -> Value {
-    let solvers = names
-        .iter()
-        .zip(measured)
-        .map(|(who, m)| ((*who).into(), merged(m, json!({ "ratio": m.times.median() / unit }))));
+    let solvers = names.iter().zip(measured).map(|(who, m)| {
+        ((*who).into(), merge_objects(m, json!({ "ratio": m.times.median() / unit })))
+    });
     json!({
         "settings": name, "vertices": n, "queries": measured[0].times.count(),
         "solvers": solvers.collect::<Map<_, _>>(), "parry_8": parry, "phases": phases,
@@ -216,7 +216,7 @@ fn query_options(narrowing: Option<cta::Options>) -> Options {
 }
 
 /// Answers a block twice without a memory, and measures the second pass.
-fn answer_twice(who: usize, (bodies, settings): &Block, measured: &mut Measured) {
+fn answer_twice(who: usize, (bodies, settings): &Block, measured: &mut SolverFigures) {
     let stopwatch = Stopwatch::new();
     let options = query_options(COMPARED[who].1);
     let cast = |s: &Setting| s.cast(bodies, &options)?.first_contact();
@@ -225,12 +225,12 @@ fn answer_twice(who: usize, (bodies, settings): &Block, measured: &mut Measured)
     }
     for setting in settings {
         let (outcome, spent) = stopwatch.time(|| cast(setting));
-        measured.note(spent, &outcome);
+        measured.add_outcome(spent, &outcome);
     }
 }
 
 /// Follows a sequence with a tracker.
-fn follow_sequence(who: usize, (bodies, sequence): &Block, measured: &mut Measured) {
+fn follow_sequence(who: usize, (bodies, sequence): &Block, measured: &mut SolverFigures) {
     let stopwatch = Stopwatch::new();
     let (_, until, focus) = FOLLOWED[who];
     let options = query_options(Some(search_until(until)));
@@ -238,7 +238,7 @@ fn follow_sequence(who: usize, (bodies, sequence): &Block, measured: &mut Measur
     for setting in sequence {
         let (outcome, spent) =
             stopwatch.time(|| tracker.first_contact(&setting.cast(bodies, &options)?));
-        measured.note(spent, &outcome);
+        measured.add_outcome(spent, &outcome);
     }
 }
 
@@ -261,7 +261,7 @@ fn measure_phases(blocks: &[Block], is_focused: bool) -> Value {
                     }
                 });
                 if pass == 1 && found.is_ok() {
-                    let phases = clock.profile().phases();
+                    let phases = clock.profile().phase_times();
                     spent.resize_with(phases.len(), Default::default);
                     for ((name, times), (phase, nanoseconds)) in spent.iter_mut().zip(phases) {
                         *name = phase;

@@ -11,7 +11,7 @@ use colltrans::motion::path::{
     Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathError, PathOutcome,
 };
 use colltrans::{AnyBody, ConvexPolyhedron, Pose, Solid};
-use colltrans_bench::harness::{self, naming};
+use colltrans_bench::harness::{self, with_name};
 use colltrans_bench::times::Clock;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::random_hull;
@@ -33,7 +33,7 @@ fn main() -> ExitCode {
             "obstacles:<10; pairs:>8; looks:>8; planes:>8; ms:>10.1; check, ms:>10.1=check_ms",
         );
         for (name, solids) in [("convex", false), ("solids", true)] {
-            run.add(measure_scene(name, solids, run.choose(3, TIMES)).map_err(naming(name))?);
+            run.add(measure_scene(name, solids, run.choose(3, TIMES)).map_err(with_name(name))?);
         }
         Ok(())
     })
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
 fn measure_scene(name: &str, solids: bool, times: usize) -> Result<Value, PathError> {
     let mut random = Random::new(5);
     let (arm, links) = (build_arm()?, build_links(&mut random));
-    let path = JointPath::evenly(path_rows())?;
+    let path = JointPath::at_unit_times(path_rows())?;
     let mut obstacles: Vec<(AnyBody, Pose)> = Vec::new();
     loop {
         while obstacles.len() < OBSTACLES {
@@ -66,7 +66,7 @@ fn measure_scene(name: &str, solids: bool, times: usize) -> Result<Value, PathEr
                 };
                 return Ok(json!({
                     "obstacles": name, "pairs": cast.pairs().len(), "looks": outcome.steps().looks,
-                    "planes": outcome.proof().planes(),
+                    "planes": outcome.proof().plane_count(),
                     "ms": median(&|| drop(cast.first_contact())),
                     "check_ms": median(&|| drop(cast.verify(outcome.proof()))),
                 }));
@@ -140,9 +140,9 @@ fn build_cast<'a>(
     obstacles: &'a [(AnyBody, Pose)],
 ) -> Result<PathCast<'a>, PathError> {
     let carried = links.iter().enumerate();
-    let carried = carried.map(|(k, body)| PathBody::carried(k, body.at(Pose::IDENTITY)));
+    let carried = carried.map(|(k, body)| PathBody::carried_by(k, body.at(Pose::IDENTITY)));
     let bodies =
-        carried.chain(obstacles.iter().map(|(body, pose)| PathBody::standing(body.at(*pose))));
+        carried.chain(obstacles.iter().map(|(body, pose)| PathBody::at_rest(body.at(*pose))));
     let (own, all) = (links.len(), links.len() + obstacles.len());
     let pairs = (0..own).flat_map(|a| (own..all).map(move |b| [a, b]));
     // The links of the wrist are built into each other.

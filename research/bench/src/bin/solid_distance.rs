@@ -10,10 +10,10 @@ use std::process::ExitCode;
 
 use colltrans::solid::SolidSteps;
 use colltrans::{Pair, Pose, Solid};
-use colltrans_bench::harness::{self, merged};
-use colltrans_bench::meshes::{MeshArguments, solid};
+use colltrans_bench::harness::{self, merge_objects};
+use colltrans_bench::meshes::{MeshArguments, solid_from_mesh};
 use colltrans_bench::parry::{ParrySetting, triangle_mesh};
-use colltrans_bench::times::Beside;
+use colltrans_bench::times::Comparison;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, reach};
 use colltrans_testkit::solids::{bumpy_ball, perforated_plate, thread};
@@ -49,8 +49,10 @@ fn main() -> ExitCode {
             let rod = thread([1.0, 0.1, 0.5], [0.0, 2.0], [sides, 2 * sides], None);
             let nut = thread([1.04, 0.1, 0.5], [0.6, 1.4], [sides, sides], Some(1.5));
             let placed = |_: &Solid, _: &Solid| poses_in_thread(run.choose(10, 60));
-            let row =
-                meshes.wants(&name).then(|| measure_pair(&name, [&rod, &nut], placed)).flatten();
+            let row = meshes
+                .is_selected(&name)
+                .then(|| measure_pair(&name, [&rod, &nut], placed))
+                .flatten();
             if let Some(row) = row {
                 run.add(row);
             }
@@ -111,12 +113,12 @@ fn measure_pair(
     meshes: [&Mesh; 2],
     placed: impl Fn(&Solid, &Solid) -> Vec<[Pose; 2]>,
 ) -> Option<Value> {
-    let (p, q) = (solid(meshes[0])?, solid(meshes[1])?);
+    let (p, q) = (solid_from_mesh(meshes[0])?, solid_from_mesh(meshes[1])?);
     let [r, f] = [&p, &q].map(|s| triangle_mesh(s.vertices(), s.triangles()));
     let stopwatch = Stopwatch::new();
     let (mut nodes, mut leaves, mut off) = (0_u64, 0_u64, 0.0_f64);
     let placements = placed(&p, &q);
-    let times = Beside::in_blocks(
+    let times = Comparison::in_blocks(
         &placements,
         BLOCK,
         |[s, t]| {
@@ -125,7 +127,7 @@ fn measure_pair(
             (answer.map_or((f64::NAN, SolidSteps::default()), |of| (of.upper, of.steps)), time)
         },
         |[s, t]| {
-            let setting = ParrySetting::placed([s, t], DVec3::Z);
+            let setting = ParrySetting::from_poses([s, t], DVec3::Z);
             stopwatch.time(|| setting.distance(&r, &f))
         },
         |(upper, steps), other| {
@@ -138,5 +140,5 @@ fn measure_pair(
         "name": name, "facets": p.triangles().len() + q.triangles().len(), "settings": count,
         "nodes": nodes / count.max(1), "leaves": leaves / count.max(1), "off": off,
     });
-    Some(merged(times.to_json(), row))
+    Some(merge_objects(times.to_json(), row))
 }

@@ -16,10 +16,10 @@ use std::process::ExitCode;
 
 use colltrans::solid::{SolidCast, Workspace};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, Solid};
-use colltrans_bench::harness::{self, Run, merged};
-use colltrans_bench::meshes::{MeshArguments, solid};
+use colltrans_bench::harness::{self, Run, merge_objects};
+use colltrans_bench::meshes::{MeshArguments, solid_from_mesh};
 use colltrans_bench::parry::{ParrySetting, triangle_mesh};
-use colltrans_bench::times::Beside;
+use colltrans_bench::times::Comparison;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, reach, ring_sphere};
 use colltrans_testkit::solids::{bolt, bumpy_ball, perforated_plate, slab};
@@ -45,16 +45,16 @@ fn main() -> ExitCode {
         let columns = "what:<48=name; facets:>9; ours:>11.2=median_ns ÷ 1e3 us; mean:>11.2=mean_ns ÷ 1e3 us;
             p99:>9.0=p99_ns ÷ 1e3 us; parry:>11.1=parry_median_ns ÷ 1e3 us; ratio:>8.2=ratio_of_medians; hits:>5";
         run.table("", columns);
-        let convex = meshes.wants("convex").then(convex_pairs).into_iter().flatten();
+        let convex = meshes.is_selected("convex").then(convex_pairs).into_iter().flatten();
         for pair in mesh_pairs(meshes).into_iter().chain(convex) {
             for start in Start::ALL {
                 pair.measure(start, run);
             }
         }
-        if meshes.wants("growth") {
+        if meshes.is_selected("growth") {
             measure_growth(run);
         }
-        if meshes.wants("flat") {
+        if meshes.is_selected("flat") {
             measure_slabs(run);
         }
         Ok(())
@@ -215,7 +215,11 @@ impl Pair {
 
     /// Measures the pair from a kind of start.
     fn measure(&self, start: Start, run: &mut Run) {
-        let (Some(p), Some(q)) = (solid(&self.bodies[0]), solid(&self.bodies[1])) else { return };
+        let (Some(p), Some(q)) =
+            (solid_from_mesh(&self.bodies[0]), solid_from_mesh(&self.bodies[1]))
+        else {
+            return;
+        };
         let count = if start == Start::Far { run.choose(60, 300) } else { 60 };
         let name = match start {
             Start::Far => self.name.clone(),
@@ -223,7 +227,7 @@ impl Pair {
         };
         let placements = self.placements([&p, &q], start, count, run);
         let row = compare_libraries(self.group, &name, [&p, &q], &placements);
-        let mut row = merged(row, json!({ "start": start.name() }));
+        let mut row = merge_objects(row, json!({ "start": start.name() }));
         let convex = (self.group == "convex").then(|| as_convex([&p, &q], &placements)).flatten();
         let Some(times) = convex else { return run.add(row) };
         let [ours, theirs] = [&times.ours, &times.theirs].map(|times| times.median() / 1e3);
@@ -245,13 +249,13 @@ fn compare_libraries(
     placements: &[Placement],
 ) -> Value {
     let meshes = [p, q].map(|body| triangle_mesh(body.vertices(), body.triangles()));
-    let size: f64 = [p, q].map(|body| body.bounds().size().length()).into_iter().sum();
+    let size: f64 = [p, q].map(|body| body.bounds().side_lengths().length()).into_iter().sum();
     let stopwatch = Stopwatch::new();
     let (mut hits, mut apart) = (0, 0);
     let mut workspace = Workspace::default();
     // The preparation of a solid in its first query does not count.
     placements.first().and_then(|first| first.distance([p, q], &mut workspace));
-    let times = Beside::in_blocks(
+    let times = Comparison::in_blocks(
         placements,
         BLOCK,
         |placement| {
@@ -265,7 +269,7 @@ fn compare_libraries(
             (distance, time)
         },
         |Placement { poses: [s, t], direction }| {
-            let placed = ParrySetting::placed([s, t], *direction);
+            let placed = ParrySetting::from_poses([s, t], *direction);
             stopwatch.time(|| placed.cast(&meshes[0], &meshes[1]))
         },
         |distance, other| {
@@ -282,11 +286,11 @@ fn compare_libraries(
         "group": group, "name": name, "facets": p.triangles().len() + q.triangles().len(),
         "settings": placements.len(), "hits": hits, "answers_apart": apart,
     });
-    merged(times.to_json(), row)
+    merge_objects(times.to_json(), row)
 }
 
 /// Measures the same bodies as solids and as convex polyhedra.
-fn as_convex([p, q]: [&Solid; 2], placements: &[Placement]) -> Option<Beside> {
+fn as_convex([p, q]: [&Solid; 2], placements: &[Placement]) -> Option<Comparison> {
     let hull = |body: &Solid| ConvexPolyhedron::from_points(body.vertices()).ok();
     let (a, b) = (hull(p)?, hull(q)?);
     let stopwatch = Stopwatch::new();
@@ -300,7 +304,7 @@ fn as_convex([p, q]: [&Solid; 2], placements: &[Placement]) -> Option<Beside> {
         let cast = Cast::new(a.at(s), b.at(t), direction).expect("poses in range");
         ((), stopwatch.time(|| cast.clearance()).1)
     };
-    Some(Beside::in_blocks(placements, BLOCK, solids, polyhedra, |(), ()| ()))
+    Some(Comparison::in_blocks(placements, BLOCK, solids, polyhedra, |(), ()| ()))
 }
 
 /// Measures the same body with more and more facets.
@@ -308,14 +312,14 @@ fn measure_growth(run: &mut Run) {
     let sizes = [16_000, 64_000, 256_000, 1_000_000];
     for size in run.choose(vec![sizes[0], sizes[3]], sizes.into()) {
         let mesh = bumpy_ball(size);
-        let (body, build) = Stopwatch::new().time(|| solid(&mesh));
+        let (body, build) = Stopwatch::new().time(|| solid_from_mesh(&mesh));
         let Some(body) = body else { continue };
         let mut random = run.random(&[7]);
         let placements: Vec<Placement> =
             (0..run.choose(20, 100)).map(|_| Placement::draw([1.2, 1.2], &mut random)).collect();
         let row = compare_libraries("growth", "bumpy ball", [&body, &body], &placements);
         let bytes = body.memory_bytes() as f64 / body.triangles().len() as f64;
-        run.add(merged(row, json!({ "build_ns": build, "bytes_per_facet": bytes })));
+        run.add(merge_objects(row, json!({ "build_ns": build, "bytes_per_facet": bytes })));
         println!("    built in {:.1} ms, {bytes:.0} bytes a facet", build / 1e6);
     }
 }
@@ -334,7 +338,7 @@ fn measure_slabs(run: &mut Run) {
     ];
     for parts in [[1, 1, 1], [4, 4, 1], [40, 40, 2], [180, 180, 4]] {
         let mesh = slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.25), parts);
-        let Some(body) = solid(&mesh) else { continue };
+        let Some(body) = solid_from_mesh(&mesh) else { continue };
         for (name, height, direction) in cases {
             for (turned, rotation) in [("", DQuat::IDENTITY), (", turned", oblique)] {
                 let mut random = run.random(&[9]);

@@ -12,11 +12,11 @@ use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
 use colltrans::{BuildError, ConvexPolyhedron, Options, Outcome, QueryError, Solver};
-use colltrans_bench::harness::{self, Run, naming};
+use colltrans_bench::harness::{self, Run, with_name};
 use colltrans_bench::parry::{self, ParryPolyhedron, ParrySetting};
 use colltrans_bench::shapes::Shape;
 use colltrans_bench::ties::{Placement, Tie};
-use colltrans_bench::times::Measured;
+use colltrans_bench::times::SolverFigures;
 use colltrans_lab::settings::{Meeting, Setting};
 use colltrans_lab::shapes::Bodies;
 use colltrans_testkit::timing::Stopwatch;
@@ -67,7 +67,7 @@ fn main() -> ExitCode {
         if wants(Group::General) {
             for (shape, n) in measured_sizes(&run.sizes(&SIZES)) {
                 if own.shape.as_ref().is_none_or(|part| shape.name().contains(part)) {
-                    let failed = naming(format!("{} with {n} vertices", shape.name()));
+                    let failed = with_name(format!("{} with {n} vertices", shape.name()));
                     measure_general(shape, n, run).map_err(failed)?;
                 }
             }
@@ -204,7 +204,7 @@ fn cast_with(bodies: &Bodies, setting: &Setting, solver: Solver) -> Result<Outco
 
 /// Measures a solver on all settings of a block.
 fn measure_block(
-    measured: &mut Measured,
+    measured: &mut SolverFigures,
     cases: &Cases,
     solver: Solver,
     block: &[(usize, Setting)],
@@ -226,7 +226,7 @@ fn measure_row((shape, asked): (String, usize), meeting: &str, cases: &Cases, ru
     let bytes = all().map(ConvexPolyhedron::memory_bytes).sum::<usize>();
     let mean_vertices = vertices / all().count();
     let ([ours @ .., theirs], disagreements) = take_turns(cases, mean_vertices, run.choose(2, 5));
-    let over = |of: &Measured| {
+    let over = |of: &SolverFigures| {
         let (theirs, ours) = (&theirs.times, &of.times);
         json!({ "median": theirs.median() / ours.median(), "mean": theirs.mean() / ours.mean() })
     };
@@ -242,10 +242,10 @@ fn measure_row((shape, asked): (String, usize), meeting: &str, cases: &Cases, ru
 }
 
 /// Measures all solvers and parry, and counts the settings with a different answer of parry.
-fn take_turns(cases: &Cases, vertices: usize, passes: usize) -> ([Measured; COMPARED], u32) {
-    let (mut measured, mut disagreements) = (<[Measured; COMPARED]>::default(), 0);
+fn take_turns(cases: &Cases, vertices: usize, passes: usize) -> ([SolverFigures; COMPARED], u32) {
+    let (mut measured, mut disagreements) = (<[SolverFigures; COMPARED]>::default(), 0);
     let theirs: Vec<_> =
-        cases.pairs.iter().map(|bodies| bodies.pair.each_ref().map(parry::body)).collect();
+        cases.pairs.iter().map(|bodies| bodies.pair.each_ref().map(parry::convert_body)).collect();
     let blocks: Vec<_> = cases.settings.chunks(BLOCK).collect();
     for pass in 0..passes {
         for turn in 0..blocks.len() {
@@ -268,7 +268,7 @@ fn take_turns(cases: &Cases, vertices: usize, passes: usize) -> ([Measured; COMP
 
 /// Measures parry on all settings of a block. If `compare`, counts those with a different answer.
 fn measure_parry(
-    measured: &mut Measured,
+    measured: &mut SolverFigures,
     cases: &Cases,
     theirs: &[[Option<ParryPolyhedron>; 2]],
     block: &[(usize, Setting)],

@@ -147,7 +147,7 @@ fn times_table<'m>(id: &str, title: &str, rows: impl Iterator<Item = &'m Measure
 fn read_parts(folder: &Path) -> (Vec<(String, Arc<Bodies>)>, usize) {
     let (mut parts, mut refused) = (Vec::new(), 0);
     for path in files_below(folder) {
-        if colltrans_mesh::Format::of_path(&path).is_err() {
+        if colltrans_mesh::Format::from_path(&path).is_err() {
             continue;
         }
         let Some(body) = read_hull(&path) else {

@@ -199,7 +199,7 @@ fn phase_medians(plan: &Plan, n: usize) -> Vec<(&'static str, f64)> {
             if k == 0 || answer.is_err() {
                 continue;
             }
-            let each = clock.profile().phases();
+            let each = clock.profile().phase_times();
             if phases.is_empty() {
                 phases = each.iter().map(|(name, _)| (*name, Vec::new())).collect();
             }

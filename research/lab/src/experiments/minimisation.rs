@@ -6,7 +6,7 @@
 //! ([`colltrans::cta::Cuts::Centroid`]). A search ends, like the paper's, where the best point of a cell solves the
 //! problem.
 
-use colltrans::observe::{Cut, Observer, PlanarProblem, Sections, Touch};
+use colltrans::observe::{Cut, Observer, PlanarProblem, SectionContact, Sections};
 use colltrans::{Outcome, cta};
 use glam::DVec2;
 
@@ -83,7 +83,7 @@ impl Observer for Watcher {
 
     fn planar_problem(&mut self, problem: impl FnOnce() -> PlanarProblem) {
         let problem = problem();
-        self.vertex_contacts += u32::from(problem.touch == Touch::Vertex);
+        self.vertex_contacts += u32::from(problem.touch == SectionContact::Vertex);
         self.last = Some(problem);
     }
 

@@ -63,7 +63,7 @@ fn measure(plan: &Plan, n: usize, pass: u32) -> Profiled {
         })
         .collect();
     // Other programs on the machine disturb some queries, in any phase. The slowest twentieth is discarded.
-    queries.sort_by(|(_, a), (_, b)| a.total().total_cmp(&b.total()));
+    queries.sort_by(|(_, a), (_, b)| a.total_nanoseconds().total_cmp(&b.total_nanoseconds()));
     queries.truncate((queries.len() * 19).div_ceil(20));
     Profiled { vertices: vec![bodies.vertices()], queries }
 }
@@ -86,11 +86,12 @@ impl Profiled {
 
     /// Returns the share of a phase in per cent, with its interval.
     fn estimated(&self, name: &str) -> Estimate {
-        let of = |p: &Profile| p.phases().iter().filter(|(n, _)| *n == name).map(|(_, t)| t).sum();
+        let of =
+            |p: &Profile| p.phase_times().iter().filter(|(n, _)| *n == name).map(|(_, t)| t).sum();
         let sample = |time: &dyn Fn(&Profile) -> f64| {
             Sample::of(self.queries.iter().map(|(group, profile)| (*group, time(profile))))
         };
-        let samples = [sample(&of), sample(&Profile::total)];
+        let samples = [sample(&of), sample(&Profile::total_nanoseconds)];
         estimate(&samples, |s| 100.0 * s[0].iter().sum::<f64>() / s[1].iter().sum::<f64>())
     }
 
@@ -116,7 +117,7 @@ fn shares_table(profiled: &[Profiled]) -> Table {
         profiled[0].queries.len(),
         grouped_digits(profiled[0].vertices())
     );
-    let rows = first.phases().iter().map(row).collect();
+    let rows = first.phase_times().iter().map(row).collect();
     Table { id: "table-1".into(), title, columns, rows }
 }
 

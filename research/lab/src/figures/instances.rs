@@ -52,7 +52,7 @@ pub(super) fn sections_figure(view: &View, instance: &Instance, title: &str) -> 
         .map(|s| s.corners.iter().map(|&w| place(w)).collect::<Vec<_>>());
     sheet.polygon("fixed", &flat[1]);
     sheet.polygon("moving", &flat[0]);
-    if instance.touch.meets() {
+    if instance.touch.intersects() {
         draw_contact(&mut sheet, &flat, map.at(instance.points[0]));
     } else {
         let way = map.way(instance.line);

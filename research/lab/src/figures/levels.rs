@@ -1,6 +1,6 @@
 //! Pictures in the plane of the levels: the mark, and minimisations on it.
 
-use colltrans::observe::Touch;
+use colltrans::observe::SectionContact;
 use glam::DVec2;
 
 use super::Scene;
@@ -12,7 +12,7 @@ use super::sheet::{Anchor, Map, Sheet, rectangle};
 /// Draws the cells and the names of the axes.
 fn draw_mark(sheet: &mut Sheet, map: &Map, mark: &Mark, [low, high]: [DVec2; 2]) {
     for cell in &mark.cells {
-        let class = if cell.touch == Touch::Edges { "domain" } else { "vertex-cell" };
+        let class = if cell.touch == SectionContact::Edges { "domain" } else { "vertex-cell" };
         sheet.polygon(class, &map.all(&cell.corners));
     }
     sheet.lines(
@@ -146,7 +146,7 @@ fn draw_sections(sheet: &mut Sheet, scene: &Scene, instance: &Instance, area: [D
     let map = Map::fitting(&flat.concat(), area);
     sheet.polygon("fixed", &map.all(&flat[1]));
     sheet.polygon("moving", &map.all(&flat[0]));
-    if instance.touch.meets() {
+    if instance.touch.intersects() {
         sheet.dot("dot", map.at(instance.points[0]), 4.5);
     } else {
         sheet.line("cut", map.at(instance.points[0]), map.at(instance.points[1]));
@@ -185,7 +185,7 @@ fn draw_step(sheet: &mut Sheet, map: &Map, Step { problem, cell, region, cut }: 
         }
     };
     line("cut", c);
-    if problem.touch.meets() {
+    if problem.touch.intersects() {
         line("shifted", q);
     }
     if c.distance(q) > 1e-9 {

@@ -1,6 +1,6 @@
 //! The mark of `phi`: all cells in which the same features determine the contact.
 
-use colltrans::observe::Touch;
+use colltrans::observe::SectionContact;
 use glam::DVec2;
 
 use super::planar::{Face, Features, View};
@@ -12,7 +12,7 @@ const SAMPLES: usize = 120;
 #[derive(Debug, Clone)]
 pub(super) struct Cell {
     pub(super) faces: [Face; 2],
-    pub(super) touch: Touch,
+    pub(super) touch: SectionContact,
     pub(super) corners: Vec<DVec2>,
 }
 
@@ -89,14 +89,14 @@ fn deepest_sample(all: &[(usize, usize)]) -> Option<(usize, usize)> {
 }
 
 /// Sample of a pair of levels.
-type Sample = Option<(Features, Touch)>;
+type Sample = Option<(Features, SectionContact)>;
 
 /// Returns the boundary between different cells within a small square in which the sections do not meet.
 fn cell_borders(
     corners: &[(DVec2, Sample); 4],
     seen: &impl Fn(DVec2) -> Sample,
 ) -> Vec<[DVec2; 2]> {
-    let meets = |look: &Sample| look.is_none_or(|(_, touch)| touch.meets());
+    let meets = |look: &Sample| look.is_none_or(|(_, touch)| touch.intersects());
     if corners.iter().any(|(_, look)| meets(look)) {
         return Vec::new();
     }

@@ -15,7 +15,7 @@ mod tests;
 
 use std::path::Path;
 
-use colltrans::observe::Touch;
+use colltrans::observe::SectionContact;
 use glam::DVec2;
 
 use crate::LabError;
@@ -60,7 +60,7 @@ impl Scene {
     }
 
     /// Returns the planar problem in the largest cell with this kind of contact; `None` if there is none.
-    fn sample(&self, touch: Touch) -> Option<Instance> {
+    fn sample(&self, touch: SectionContact) -> Option<Instance> {
         let met = self.mark.cells.iter().filter(|cell| cell.touch == touch);
         let size = |corners: &[DVec2]| {
             let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
@@ -97,9 +97,9 @@ pub fn figures() -> Result<Vec<(u32, String)>, Error> {
     let at = |levels: [f64; 2]| scene.view.instance(DVec2::from_array(levels));
     let first = scene.run.steps.first().and_then(|step| at(step.problem.levels));
     let first = first.ok_or(Error::Missing("first step"))?;
-    let edges = scene.sample(Touch::Edges).ok_or(Error::Missing("edge contact"))?;
-    let vertex = scene.sample(Touch::Vertex).ok_or(Error::Missing("vertex contact"))?;
-    let apart = scene.sample(Touch::Separated).ok_or(Error::Missing("separation"))?;
+    let edges = scene.sample(SectionContact::Edges).ok_or(Error::Missing("edge contact"))?;
+    let vertex = scene.sample(SectionContact::Vertex).ok_or(Error::Missing("vertex contact"))?;
+    let apart = scene.sample(SectionContact::Separated).ok_or(Error::Missing("separation"))?;
     let moved = Setting::new(AFTER, TURN_AFTER, TOWARDS_AFTER)?;
     let focused = moved.run_after(&Setting::new(BEFORE, TURN_AFTER, TOWARDS_AFTER)?, HALF)?;
     let seen = |found: &Instance, title| instances::sections_figure(&scene.view, found, title);

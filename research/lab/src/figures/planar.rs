@@ -4,7 +4,7 @@
 //! As in the library, `a`, `b` are the section axes, `x`, `y` the levels. Shadow coordinates are those of a view
 //! along `d`: `g` to the right, `h` upwards.
 
-use colltrans::observe::{Sections, Touch};
+use colltrans::observe::{SectionContact, Sections};
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::setting::{Setting, below};
@@ -70,7 +70,7 @@ pub(super) struct View {
 pub(super) type Face = (usize, usize);
 
 /// Faces in contact, position in the shadow, and kind of contact.
-type Lowest = ([Face; 2], DVec2, Touch);
+type Lowest = ([Face; 2], DVec2, SectionContact);
 
 /// Side of a section, direction across it, corners that bound the gap, and its width.
 type Gap = (Face, DVec2, [usize; 2], f64);
@@ -90,7 +90,7 @@ pub(super) enum Features {
 pub(super) struct Instance {
     pub(super) sections: [Section; 2],
     pub(super) features: Features,
-    pub(super) touch: Touch,
+    pub(super) touch: SectionContact,
     /// `phi`, or the width of the gap.
     pub(super) value: f64,
     /// Gradient of the value with respect to the levels.
@@ -196,7 +196,7 @@ impl View {
                 });
                 if inside {
                     let faces = self.bodies[body].edges[sections[body].edges[k]].1;
-                    take(faces.map(|face| (body, face)), at, Touch::Vertex);
+                    take(faces.map(|face| (body, face)), at, SectionContact::Vertex);
                 }
             }
         }
@@ -210,7 +210,7 @@ impl View {
                     take(
                         [(0, sections[0].faces[k]), (1, sections[1].faces[m])],
                         p + r * u,
-                        Touch::Edges,
+                        SectionContact::Edges,
                     );
                 }
             }
@@ -247,7 +247,7 @@ impl View {
         };
         Some(Instance {
             features: Features::Apart(side, edges[1 - side.0]),
-            touch: Touch::Separated,
+            touch: SectionContact::Separated,
             value: gap,
             gradient: DVec2::new(-rate(0), rate(1)),
             points: [0, 1].map(|body| flat[body][ends[body]]),

@@ -130,7 +130,7 @@ impl Run {
 
     /// Returns the levels of the smallest value; `None` without contact.
     pub(super) fn best(&self) -> Option<DVec2> {
-        let met = self.steps.iter().filter(|step| step.problem.touch.meets());
+        let met = self.steps.iter().filter(|step| step.problem.touch.intersects());
         let least = met.min_by(|a, b| a.problem.shifted.total_cmp(&b.problem.shifted));
         least.map(|step| DVec2::from_array(step.problem.best))
     }

@@ -1,6 +1,6 @@
 //! The slow and obvious planar problem, and the cells made of it, against the library.
 
-use colltrans::observe::Touch;
+use colltrans::observe::SectionContact;
 use colltrans_testkit::random::Random;
 use glam::DVec2;
 
@@ -40,7 +40,7 @@ fn planar_problems_are_those_of_the_library() {
             let at = DVec2::from_array(step.problem.levels);
             let Some(found) = view.instance(at) else { continue };
             assert_eq!(found.touch, step.problem.touch, "{setting:?} {at}");
-            if found.touch.meets() {
+            if found.touch.intersects() {
                 let scale = 1.0 + found.value.abs();
                 assert!(
                     (found.value - step.problem.value).abs() < 1e-9 * scale,
@@ -50,8 +50,8 @@ fn planar_problems_are_those_of_the_library() {
                 assert!(apart < 1e-9 * (1.0 + found.gradient.length()), "{setting:?} {at}");
             }
             seen[match found.touch {
-                Touch::Edges => 0,
-                Touch::Vertex => 1,
+                SectionContact::Edges => 0,
+                SectionContact::Vertex => 1,
                 _ => 2,
             }] += 1;
         }
@@ -66,7 +66,7 @@ fn cells_are_those_of_the_library() {
     for setting in random_settings(100, 6) {
         let Ok(run) = setting.run() else { continue };
         let view = View::new(&setting, &run.sections);
-        for step in run.steps.iter().filter(|step| step.problem.touch.meets()) {
+        for step in run.steps.iter().filter(|step| step.problem.touch.intersects()) {
             let at = DVec2::from_array(step.problem.levels);
             let Some(Features::Touching(faces)) = view.instance(at).map(|found| found.features)
             else {
@@ -76,7 +76,7 @@ fn cells_are_those_of_the_library() {
             let reaches = |from: &[DVec2], to: &[DVec2]| {
                 from.iter().all(|p| to.iter().any(|q| p.distance(*q) < 1e-6))
             };
-            if step.problem.touch == Touch::Edges {
+            if step.problem.touch == SectionContact::Edges {
                 let same = reaches(&step.cell, &whole) && reaches(&whole, &step.cell);
                 assert!(same, "{setting:?} {at}: {:?} {whole:?}", step.cell);
             }

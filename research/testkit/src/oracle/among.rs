@@ -16,8 +16,8 @@ use std::sync::Arc;
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::solid::{SolidCast, SolidPair};
 use colltrans::{
-    Among, AnyBody, AnyClearance, AnyDistance, AnyPlaced, ByKind, Cast, Clearance,
-    ConvexPolyhedron, NearestProof, ObstacleId, Obstacles, Pair, Pose, QueryError, Solid, WhyFree,
+    AnyBody, AnyClearance, AnyDistance, AnyPlaced, ByKind, Cast, Clearance, ConvexPolyhedron,
+    FreeReason, NearestProof, ObstacleId, Obstacles, Pair, Pose, QueryError, SceneQuery, Solid,
     Within,
 };
 
@@ -126,9 +126,9 @@ impl Setting {
     /// Builds the scene query.
     ///
     /// # Errors
-    /// The errors of [`Among::new`].
-    pub fn asked(&self) -> Result<Among<'_>, QueryError> {
-        Among::new(self.moving.at(self.pose), &self.obstacles)
+    /// The errors of [`SceneQuery::new`].
+    pub fn asked(&self) -> Result<SceneQuery<'_>, QueryError> {
+        SceneQuery::new(self.moving.at(self.pose), &self.obstacles)
     }
 
     /// Returns the direction and the length of the queries.
@@ -164,7 +164,7 @@ impl Setting {
     /// Judges the queries of the obstacles that are not ignored.
     fn judge(
         &self,
-        asked: &Among,
+        asked: &SceneQuery,
         ignored: &dyn Fn(ObstacleId) -> bool,
         tally: &mut Tally,
     ) -> Result<(), String> {
@@ -180,7 +180,7 @@ impl Setting {
     /// Judges the nearest obstacle.
     fn judge_nearest(
         &self,
-        asked: &Among,
+        asked: &SceneQuery,
         all: &[(ObstacleId, AnyPlaced)],
         squares: &[Option<Ratio>],
         tally: &mut Tally,
@@ -232,7 +232,7 @@ impl Setting {
     /// Judges the obstacles within a length.
     fn judge_within(
         &self,
-        asked: &Among,
+        asked: &SceneQuery,
         all: &[(ObstacleId, AnyPlaced)],
         squares: &[Option<Ratio>],
     ) -> Result<(), String> {
@@ -270,7 +270,7 @@ impl Setting {
     /// Judges the clearance.
     fn judge_clearance(
         &self,
-        asked: &Among,
+        asked: &SceneQuery,
         all: &[(ObstacleId, AnyPlaced)],
         tally: &mut Tally,
     ) -> Result<(), String> {
@@ -314,7 +314,7 @@ impl Setting {
             require!(refused == [true; 2], "a modified proof is accepted: {refused:?}");
             tally.add("refused", 2);
         }
-        if self.seed.is_multiple_of(PROGRAMME_EVERY) && answer.distance().is_some() {
+        if self.seed.is_multiple_of(PROGRAMME_EVERY) && answer.safe_translation().is_some() {
             self.judge_translations(all, answer.lower)?;
         }
         self.judge_end(asked, &answer)
@@ -322,7 +322,7 @@ impl Setting {
 
     /// Checks a query with a solid that vanishes when it is shrunk. If the query examines this obstacle, the
     /// error must name it.
-    fn judge_refusal(&self, asked: &Among, thin: ObstacleId) -> Result<(), String> {
+    fn judge_refusal(&self, asked: &SceneQuery, thin: ObstacleId) -> Result<(), String> {
         match asked.certified_clearance(self.direction) {
             Ok(_) => Ok(()),
             Err(QueryError::Obstacle { reason, .. })
@@ -349,7 +349,11 @@ impl Setting {
     }
 
     /// Checks that a limit on the translation does not change the results before it.
-    fn judge_end(&self, asked: &Among, answer: &colltrans::ClearanceAmong) -> Result<(), String> {
+    fn judge_end(
+        &self,
+        asked: &SceneQuery,
+        answer: &colltrans::SceneClearance,
+    ) -> Result<(), String> {
         for end in [0.0, 0.5, 1.0, 4.0] {
             let ended =
                 asked.clearance_before(self.direction, end).map_err(|e| error_message(&e))?;
@@ -369,21 +373,22 @@ impl Setting {
         lower: f64,
     ) -> Result<(), String> {
         let cast = Cast::new(p, q, self.direction).map_err(|e| error_message(&e))?;
-        let Some(first) = collision_translation(&Scene::of(&cast)) else { return Ok(()) };
-        let slides = matches!(cast.clearance(), Ok(Clearance::Free(WhyFree::Slides(_))));
+        let Some(first) = collision_translation(&Scene::from_cast(&cast)) else { return Ok(()) };
+        let slides = matches!(cast.clearance(), Ok(Clearance::Free(FreeReason::Slides(_))));
         let is_before = !first.is_negative() && first < Ratio::from_f64(lower.min(1e300));
         require!(!is_before || slides, "met at {:e}, before {lower:e}", first.to_f64());
         Ok(())
     }
 
     /// Compares with new obstacles in the final poses.
-    fn compare_anew(&self, asked: &Among) -> Result<(), String> {
+    fn compare_anew(&self, asked: &SceneQuery) -> Result<(), String> {
         let mut all: Vec<_> = self.obstacles.iter().collect();
         all.sort_by_key(|(id, ..)| *id);
         let mut anew = Obstacles::new();
         anew.insert_all(all.iter().map(|(_, body, pose)| ((*body).clone(), *pose)));
         let old = |id: ObstacleId| all[id.0 as usize].0;
-        let other = Among::new(self.moving.at(self.pose), &anew).map_err(|e| error_message(&e))?;
+        let other =
+            SceneQuery::new(self.moving.at(self.pose), &anew).map_err(|e| error_message(&e))?;
         let [a, b] = [asked, &other].map(|asked| asked.nearest().ok().flatten());
         let of = |nearest: colltrans::Nearest| (nearest.distance, nearest.lower);
         require!(
@@ -400,7 +405,7 @@ impl Setting {
         let closer: Vec<_> = b.closer.iter().map(|(id, near)| (old(*id), *near)).collect();
         require!(a.closer == closer, "with new obstacles, the closer ones differ");
         let [a, b] = [asked, &other].map(|asked| asked.clearance(self.direction).ok());
-        let of = |answer: colltrans::ClearanceAmong| answer.stop.map(|(_, stop)| upper_of(&stop));
+        let of = |answer: colltrans::SceneClearance| answer.stop.map(|(_, stop)| upper_of(&stop));
         require!(a.map(of) == b.map(of), "with new obstacles, the clearance differs");
         Ok(())
     }
@@ -408,7 +413,7 @@ impl Setting {
 
 /// Modifies a proof in several ways, and returns the number of rejected proofs. All invalid ones must be
 /// rejected.
-fn count_rejected_proofs(asked: &Among, proof: &NearestProof) -> Result<u64, String> {
+fn count_rejected_proofs(asked: &SceneQuery, proof: &NearestProof) -> Result<u64, String> {
     let changes: [&dyn Fn(&mut NearestProof); 4] = [
         &|proof| proof.lower = proof.lower * 1.001 + 0.001,
         &|proof| proof.lower = f64::NAN,
@@ -433,7 +438,7 @@ fn count_rejected_proofs(asked: &Among, proof: &NearestProof) -> Result<u64, Str
 }
 
 /// Checks whether the boxes exclude all obstacles of a proof, so that it is valid without their entries.
-fn boxes_tell(asked: &Among, proof: &NearestProof) -> bool {
+fn boxes_tell(asked: &SceneQuery, proof: &NearestProof) -> bool {
     let mut bare = proof.clone();
     bare.apart.clear();
     asked.verify(&bare).is_ok()

@@ -23,7 +23,7 @@ pub struct Cubes {
 
 /// A group of pieces that leaves the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Leaves {
+pub struct Freedom {
     /// The number of moves, including the last one.
     pub moves: usize,
     /// The pieces as a bit set.
@@ -104,20 +104,20 @@ impl Cubes {
 
     /// Returns the smallest number of moves after which some pieces have left the others; `None` if that is
     /// impossible.
-    pub fn level(&self) -> Option<Leaves> {
+    pub fn level(&self) -> Option<Freedom> {
         let all: Vec<usize> = (0..self.pieces.len()).collect();
         self.level_among(&all, usize::MAX)
     }
 
     /// Checks whether the pieces can be separated completely, piece by piece and group by group.
-    pub fn comes_apart(&self) -> bool {
+    pub fn can_separate(&self) -> bool {
         let mut groups = vec![(0..self.pieces.len()).collect::<Vec<_>>()];
         while let Some(group) = groups.pop() {
             if group.len() < 2 {
                 continue;
             }
             // Any move that is possible with the removed group is possible without it.
-            let Some(Leaves { group: gone, .. }) = self.level_among(&group, usize::MAX) else {
+            let Some(Freedom { group: gone, .. }) = self.level_among(&group, usize::MAX) else {
                 return false;
             };
             let (out, rest) = group.iter().partition(|&&k| gone >> k & 1 == 1);
@@ -128,7 +128,7 @@ impl Cubes {
 
     /// Returns the smallest number of moves, at most `most`, after which some of the pieces `among` have left
     /// the others; `None` if that is impossible.
-    pub fn level_among(&self, among: &[usize], most: usize) -> Option<Leaves> {
+    pub fn level_among(&self, among: &[usize], most: usize) -> Option<Freedom> {
         let count = among.len();
         if count < 2 {
             return None;
@@ -154,7 +154,7 @@ impl Cubes {
                         if steps > 2 * far {
                             let own = (0..count).filter(|k| group >> k & 1 == 1);
                             let group = own.map(|k| 1 << among[k]).sum();
-                            return Some(Leaves { moves: moves + 1, group });
+                            return Some(Freedom { moves: moves + 1, group });
                         }
                         if seen.insert(to.clone()) {
                             queue.push_back((to.clone(), moves + 1));
@@ -205,7 +205,7 @@ mod tests {
         let beside = Cubes {
             pieces: vec![cells_in_bar([0, 0, 0], [1, 1, 1]), cells_in_bar([1, 0, 0], [2, 1, 1])],
         };
-        assert_eq!(beside.level(), Some(Leaves { moves: 1, group: 1 }));
+        assert_eq!(beside.level(), Some(Freedom { moves: 1, group: 1 }));
         // A key in a slot moves along it, then up.
         let mut slot = cells_in_bar([0, 0, 0], [7, 3, 3]);
         let hollow = |c: &Cell| {
@@ -214,11 +214,11 @@ mod tests {
         };
         slot.retain(|c| !hollow(c));
         let key = Cubes { pieces: vec![cells_in_bar([1, 1, 1], [3, 2, 2]), slot.clone()] };
-        assert_eq!(key.level(), Some(Leaves { moves: 2, group: 1 }));
-        assert!(key.comes_apart());
+        assert_eq!(key.level(), Some(Freedom { moves: 2, group: 1 }));
+        assert!(key.can_separate());
         // The key is longer than the opening.
         let stuck = Cubes { pieces: vec![cells_in_bar([1, 1, 1], [4, 2, 2]), slot] };
         assert_eq!(stuck.level(), None);
-        assert!(!stuck.comes_apart());
+        assert!(!stuck.can_separate());
     }
 }

@@ -198,7 +198,7 @@ pub fn bulk(bytes: &[u8]) {
     let [moving, fixed] =
         [bodies.moving.at(setting.moving_pose), bodies.fixed.at(setting.fixed_pose)];
     let rotations = FixedRotations::new(moving, fixed);
-    let Ok(approach) = rotations.along(setting.direction) else { return };
+    let Ok(approach) = rotations.for_direction(setting.direction) else { return };
     for _ in 0..MOST_STEPS {
         if let Ok(cast) = setting.query(&bodies) {
             let findings = still::ask(&rotations, &approach, &cast, &setting, true)
@@ -316,11 +316,11 @@ fn change_setting(setting: &mut Setting, reader: &mut Reader) {
             replace_valid_pose(&mut setting.fixed_pose, Pose::new(rotation, reader.vector()));
         }
         5 => {
-            let moved = setting.moving_pose.translated(reader.vector());
+            let moved = setting.moving_pose.translated_by(reader.vector());
             replace_valid_pose(&mut setting.moving_pose, moved);
         }
         6 => {
-            let moved = setting.moving_pose.translated(reader.vector() * 2.0_f64.powi(-10));
+            let moved = setting.moving_pose.translated_by(reader.vector() * 2.0_f64.powi(-10));
             replace_valid_pose(&mut setting.moving_pose, moved);
         }
         _ => setting.graze_tolerance = f64::from(reader.byte()) / 16.0,

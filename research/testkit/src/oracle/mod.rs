@@ -4,7 +4,7 @@
 //! [`check`] compares the answer with the [`scene`] in exact coordinates ([`exact`]), and for a sample with the
 //! linear programme ([`simplex`]) and the exact lateral overlap ([`shadow`]). Other modules judge:
 //!
-//! - [`distance`] the algorithms for distances, [`nearest`] the library's distances and depths, [`keep`] casts
+//! - [`distance`] the algorithms for distances, [`nearest`] the library's distances and depths, [`min_gap`] casts
 //!   with a minimum gap,
 //! - [`among`] scene queries, [`still`] bulk casts without rotation,
 //! - [`motion`] rotating bodies, [`path`] bodies moved by joints, [`play`] both with little play,
@@ -17,7 +17,7 @@ pub mod distance;
 pub mod exact;
 pub mod fuzz;
 pub mod input;
-pub mod keep;
+pub mod min_gap;
 pub mod motion;
 pub mod nearest;
 pub mod path;

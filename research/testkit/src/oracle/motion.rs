@@ -13,7 +13,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 use std::sync::LazyLock;
 
-use colltrans::motion::{Meeting, Met, MotionOutcome, PlaneAt};
+use colltrans::motion::{ContactProof, MotionOutcome, ProvenContact, TimedPlane};
 use colltrans::{ConvexPolyhedron, Pose};
 use dashu_int::IBig;
 use glam::DVec3;
@@ -285,16 +285,16 @@ pub fn points_carried(
 
 /// Two bodies and their motions.
 #[derive(Debug)]
-pub struct Judge<'a> {
+pub struct MotionJudge<'a> {
     /// The moving and the fixed body.
     pub bodies: [&'a ConvexPolyhedron; 2],
     /// Their motions.
     pub spins: [Spin; 2],
     /// The minimum gap; if negative, the tolerated depth.
-    pub keep: f64,
+    pub min_gap: f64,
 }
 
-impl Judge<'_> {
+impl MotionJudge<'_> {
     /// Returns the vertices of both bodies at a time.
     fn places(&self, time: f64) -> [Vec<Vector>; 2] {
         [0, 1].map(|k| vertices_at(self.bodies[k], &self.spins[k], time))
@@ -311,7 +311,7 @@ impl Judge<'_> {
         let low = q.iter().map(|x| dot(normal, x)).reduce(|a, b| if b < a { b } else { a });
         let high = p.iter().map(|x| dot(normal, x)).reduce(|a, b| if b > a { b } else { a });
         let (low, high) = (low?, high?);
-        let asked = &(Fixed::new(self.keep) + Fixed::new(more)) * &dot(normal, normal).sqrt();
+        let asked = &(Fixed::new(self.min_gap) + Fixed::new(more)) * &dot(normal, normal).sqrt();
         Some(low - high - asked)
     }
 
@@ -358,7 +358,7 @@ impl Judge<'_> {
     }
 
     /// Checks the interval between two planes.
-    fn between(&self, a: &PlaneAt, b: &PlaneAt) -> Result<(), Objection> {
+    fn between(&self, a: &TimedPlane, b: &TimedPlane) -> Result<(), Objection> {
         for k in 1..BETWEEN {
             let share = k as f64 / BETWEEN as f64;
             let time = a.time + share * (b.time - a.time);
@@ -385,8 +385,8 @@ impl Judge<'_> {
     }
 
     /// Checks the proof of a meeting.
-    fn meets(&self, meeting: Option<&Meeting>) -> Result<(), Objection> {
-        let Some(Meeting { time, met }) = meeting else {
+    fn meets(&self, meeting: Option<&ProvenContact>) -> Result<(), Objection> {
+        let Some(ProvenContact { time, met }) = meeting else {
             return Err(Objection("the proof of the meeting is missing".into()));
         };
         let places = self.places(*time);
@@ -394,9 +394,9 @@ impl Judge<'_> {
             minus(&places[1][pair.fixed.index()], &places[0][pair.moving.index()])
         };
         let holds = match met {
-            Met::Deep(depth) => {
+            ContactProof::Deep(depth) => {
                 let surface = &depth.enclosure;
-                let least = Fixed::new((-self.keep).max(0.0));
+                let least = Fixed::new((-self.min_gap).max(0.0));
                 surface.triangles.iter().zip(&surface.normals).all(|(corners, normal)| {
                     let normal = vector(*normal);
                     let asked = &least * &dot(&normal, &normal).sqrt();
@@ -405,7 +405,7 @@ impl Judge<'_> {
                         .all(|k| dot(&normal, &difference(&surface.pairs[*k as usize])) > asked)
                 })
             }
-            Met::Near(near) => {
+            ContactProof::Near(near) => {
                 let total: f64 = near.weights.iter().sum();
                 let weight = |w: f64| Fixed::new(w).over(&Fixed::new(total));
                 let apart = near
@@ -415,7 +415,7 @@ impl Judge<'_> {
                     .fold([0; 3].map(|_| Fixed::zero()), |sum, (pair, w)| {
                         plus(&sum, &times(&difference(pair), &weight(w)))
                     });
-                dot(&apart, &apart).sqrt() <= Fixed::new(self.keep)
+                dot(&apart, &apart).sqrt() <= Fixed::new(self.min_gap)
             }
         };
         if holds { Ok(()) } else { Err(Objection(format!("the bodies do not meet at {time}"))) }

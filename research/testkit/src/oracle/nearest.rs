@@ -30,7 +30,7 @@ macro_rules! require {
 
 /// The exact distance of two placed bodies, with which answers are compared.
 #[derive(Debug)]
-pub struct Judge<'a> {
+pub struct DistanceJudge<'a> {
     pair: Pair<'a>,
     moving: Vec<Vector>,
     fixed: Vec<Vector>,
@@ -40,7 +40,7 @@ pub struct Judge<'a> {
     pub noise: f64,
 }
 
-impl<'a> Judge<'a> {
+impl<'a> DistanceJudge<'a> {
     /// Computes the exact distance of a pair.
     pub fn new(pair: Pair<'a>) -> Self {
         let [p, q] = [pair.moving_pose(), pair.fixed_pose()];

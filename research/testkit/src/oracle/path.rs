@@ -7,7 +7,7 @@
 use std::borrow::Cow;
 
 use colltrans::motion::path::{
-    Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathOutcome, Place,
+    Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathOutcome, PathPlace,
 };
 use colltrans::{ConvexPolyhedron, Pair, Pose, Solid};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
@@ -42,7 +42,7 @@ pub struct Arm {
     /// The pairs of bodies to check.
     pub pairs: Vec<[usize; 2]>,
     /// The minimum gap.
-    pub keep: f64,
+    pub min_gap: f64,
 }
 
 impl Arm {
@@ -92,11 +92,11 @@ impl Arm {
             }
         }
         let carried = bodies.len();
-        let mut arm = Self { frames, rows: all, bodies, pairs: Vec::new(), keep: 0.0 };
+        let mut arm = Self { frames, rows: all, bodies, pairs: Vec::new(), min_gap: 0.0 };
         for _ in 0..=random.index(3) {
             // The obstacle is near a position of a body on the path.
             let size = random.pick(&[0.02, 0.2, 0.5]);
-            let place = Place { row: random.index(rows), share: random.unit() };
+            let place = PathPlace { row: random.index(rows), share: random.unit() };
             let frame = arm.bodies[random.index(carried)].0.unwrap_or(0);
             let by = arm.places(place)[frame].translation;
             let pose =
@@ -108,12 +108,12 @@ impl Arm {
             .flat_map(|a| (a + 1..count).map(move |b| [a, b]))
             .filter(|[a, b]| *b >= carried || *b > *a + 1)
             .collect();
-        arm.keep = if random.one_in(4) { random.pick(&[1e-6, 0.01, 0.1]) } else { 0.0 };
+        arm.min_gap = if random.one_in(4) { random.pick(&[1e-6, 0.01, 0.1]) } else { 0.0 };
         arm
     }
 
     /// Returns the transformation of each frame, by plain matrices.
-    pub fn places(&self, place: Place) -> Vec<DAffine3> {
+    pub fn places(&self, place: PathPlace) -> Vec<DAffine3> {
         let rows = &self.rows;
         let next = &rows[(place.row + 1).min(rows.len() - 1)];
         let mut values = rows[place.row].iter().zip(next).map(|(a, b)| a + (b - a) * place.share);
@@ -143,7 +143,7 @@ impl Arm {
     ///
     /// # Errors
     /// [`Objection`] if a pose is invalid, or the library has no answer.
-    pub fn gap(&self, pair: [usize; 2], place: Place) -> Result<f64, Objection> {
+    pub fn gap(&self, pair: [usize; 2], place: PathPlace) -> Result<f64, Objection> {
         let places = self.places(place);
         let pose = |k: usize| {
             let (frame, _, pose) = &self.bodies[k];
@@ -180,7 +180,7 @@ impl Arm {
     pub fn judge(&self, samples: usize) -> Result<PathOutcome, Objection> {
         let object = |what: &dyn std::fmt::Display| Objection(what.to_string());
         let mechanism = Mechanism::new(self.frames.clone()).map_err(|e| object(&e))?;
-        let path = JointPath::evenly(self.rows.clone()).map_err(|e| object(&e))?;
+        let path = JointPath::at_unit_times(self.rows.clone()).map_err(|e| object(&e))?;
         let bodies = self.bodies.iter().map(|(frame, body, pose)| PathBody {
             frame: *frame,
             placed: match body {
@@ -189,7 +189,7 @@ impl Arm {
             },
         });
         let cast = PathCast::new(&mechanism, &path, bodies.collect(), self.pairs.clone());
-        let cast = cast.and_then(|cast| cast.keeping(self.keep)).map_err(|e| object(&e))?;
+        let cast = cast.and_then(|cast| cast.with_min_gap(self.min_gap)).map_err(|e| object(&e))?;
         let outcome = cast.first_contact().map_err(|e| object(&e))?;
         let checked = cast.verify(outcome.proof()).map_err(|e| object(&e))?;
         let last = self.rows.len() as f64 - 1.0;
@@ -205,10 +205,10 @@ impl Arm {
         for k in 0..samples {
             let time = said[0] * k as f64 / samples as f64;
             let row = (time as usize).min(self.rows.len() - 2);
-            let place = Place { row, share: time - row as f64 };
+            let place = PathPlace { row, share: time - row as f64 };
             for pair in &self.pairs {
                 let gap = self.gap(*pair, place)?;
-                if gap < self.keep - OFF && said[1] > 0.0 {
+                if gap < self.min_gap - OFF && said[1] > 0.0 {
                     return Err(Objection(format!("{pair:?} are {gap:e} apart at {time}")));
                 }
             }
@@ -217,7 +217,7 @@ impl Arm {
             && let Some(meeting) = &of.proof.meeting
         {
             let gap = self.gap(of.pair, meeting.place)?;
-            if gap > self.keep {
+            if gap > self.min_gap {
                 return Err(Objection(format!("{:?} are {gap:e} apart at {}", of.pair, of.upper)));
             }
         }

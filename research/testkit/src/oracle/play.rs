@@ -95,7 +95,7 @@ impl Screw {
             }
             "a pin beside a wall" => {
                 let turned = screw(pose(DVec3::ZERO, none), DVec3::ZERO, DVec3::Z, angle, rise);
-                ([draw_pin(&mut random), cube()], [turned, Motion::still(pose(beside, none))])
+                ([draw_pin(&mut random), cube()], [turned, Motion::at_rest(pose(beside, none))])
             }
             "pins on parallel axes" | "pins of one spin on parallel axes" => {
                 let other = if kind == 4 { angle } else { angle * ratio };
@@ -156,7 +156,7 @@ impl Screw {
         }
         for k in 0..SAMPLES {
             let time = said[0] * f64::from(k) / f64::from(SAMPLES);
-            let [Ok(a), Ok(b)] = self.motions.each_ref().map(|motion| motion.at(time)) else {
+            let [Ok(a), Ok(b)] = self.motions.each_ref().map(|motion| motion.pose_at(time)) else {
                 continue;
             };
             let pair = Pair::new(p.at(a), q.at(b)).map_err(|e| object(&e))?;
@@ -212,7 +212,7 @@ pub fn slider(seed: u64) -> Arm {
             (None, Body::Convex(table), slant),
         ],
         pairs: vec![[0, 1]],
-        keep: 0.0,
+        min_gap: 0.0,
     }
 }
 
@@ -254,12 +254,12 @@ pub fn chain(seed: u64) -> Arm {
         rows: vec![first, second],
         bodies: vec![(Some(last), pin, Pose::IDENTITY)],
         pairs: vec![[0, 1]],
-        keep: 0.0,
+        min_gap: 0.0,
     };
     let (frame, pose) = if carried {
         (Some(last - 1), origin)
     } else {
-        let start = arm.places(colltrans::motion::path::Place { row: 0, share: 0.0 })[last - 1];
+        let start = arm.places(colltrans::motion::path::PathPlace { row: 0, share: 0.0 })[last - 1];
         let there =
             start * glam::DAffine3::from_mat3_translation(origin.matrix(), origin.translation());
         (None, Pose::from_matrix(there.matrix3, there.translation).expect("a pose"))

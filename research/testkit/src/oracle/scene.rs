@@ -55,7 +55,7 @@ impl Scene {
     }
 
     /// Builds the scene of a cast from the vertices of its bodies.
-    pub fn of(cast: &Cast) -> Self {
+    pub fn from_cast(cast: &Cast) -> Self {
         let (moving, fixed) = (cast.moving().vertices(), cast.fixed().vertices());
         let (moving_pose, fixed_pose) = (cast.moving_pose(), cast.fixed_pose());
         Self::new((moving, &moving_pose), (fixed, &fixed_pose), cast.direction())

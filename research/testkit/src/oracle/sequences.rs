@@ -329,7 +329,8 @@ mod tests {
             let mut rng = Random::new(seed);
             let wanted = rng.range(-0.1, 0.0);
             let displacement = rim_displacement(&setting, rng.direction(), 0.5, wanted);
-            setting.moving_pose = setting.moving_pose.translated(displacement).expect("in range");
+            setting.moving_pose =
+                setting.moving_pose.translated_by(displacement).expect("in range");
             let judge_bodies = setting.bodies().expect("bodies");
             let scene = setting.judge(&judge_bodies).scene;
             let found = sideways_overlap(&scene).to_f64();

@@ -3,7 +3,7 @@
 //! Positions and directions are derived from a setting: near it and far from it, and so that the line passes a
 //! vertex of `M`, or the mean of two or four points of `M`, where ties occur.
 
-use colltrans::{Approach, Cast, FixedRotations, Outcome, Pose, QueryError};
+use colltrans::{Cast, DirectionMap, FixedRotations, Outcome, Pose, QueryError};
 use glam::DVec3;
 
 use crate::oracle::check::{Judge, Objection};
@@ -26,7 +26,7 @@ pub type Finding = (&'static str, Outcome, Result<Agreement, Objection>);
 /// judged.
 pub fn ask<'a>(
     rotations: &FixedRotations<'a>,
-    approach: &Approach<'_, 'a>,
+    approach: &DirectionMap<'_, 'a>,
     cast: &Cast<'a>,
     setting: &Setting,
     with_oracle: bool,

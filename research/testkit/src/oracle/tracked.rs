@@ -8,13 +8,13 @@ use colltrans::{
     Contact, Focus, Grazing, Outcome, QueryError, Solver, StartedFrom, Steps, Tracker, cta,
 };
 
-use crate::oracle::check::{Judge, Objection, Proof, same};
+use crate::oracle::check::{Judge, Objection, Proof, compare_answers};
 use crate::oracle::settings::{Bodies, Setting};
 use crate::shapes::reach;
 
 /// A tracker's solvers and focus.
 #[derive(Debug, Clone, Copy)]
-pub struct Lane {
+pub struct TrackedSequence {
     /// The name in reports.
     pub name: &'static str,
     /// The solvers, used in turn.
@@ -24,11 +24,11 @@ pub struct Lane {
 }
 
 /// Returns the lanes for bodies with this reach, which determines the size of the fixed region.
-pub fn lanes(reach: f64) -> [Lane; 7] {
+pub fn lanes(reach: f64) -> [TrackedSequence; 7] {
     let (auto, cta) = (&[Solver::Auto][..], &[Solver::Cta][..]);
     let lane = |name, solvers, features, region| {
         let focus = Focus::NONE.with_features(features).with_region(region);
-        Lane { name, solvers, focus }
+        TrackedSequence { name, solvers, focus }
     };
     [
         lane("auto", auto, true, cta::Region::Automatic),
@@ -70,7 +70,7 @@ pub struct Agreement {
 #[derive(Debug, Clone)]
 pub struct Lanes<'a> {
     bodies: &'a Bodies,
-    trackers: Vec<(Lane, Tracker<'a>)>,
+    trackers: Vec<(TrackedSequence, Tracker<'a>)>,
     asked: usize,
 }
 
@@ -81,7 +81,7 @@ impl<'a> Lanes<'a> {
     /// Never, because the regions have a positive size.
     pub fn new(bodies: &'a Bodies) -> Self {
         let reach = reach(bodies.moving.vertices()).max(reach(bodies.fixed.vertices()));
-        let tracker = |lane: Lane| {
+        let tracker = |lane: TrackedSequence| {
             let tracker = Tracker::new().with_focus(lane.focus);
             (lane, tracker.expect("a region with a size"))
         };
@@ -100,7 +100,7 @@ impl<'a> Lanes<'a> {
         let asked = self.asked;
         self.asked += 1;
         let judge = Judge::new(cast).with_input(&setting.moving, &setting.fixed);
-        let find = |(lane, tracker): &mut (Lane, Tracker<'a>)| {
+        let find = |(lane, tracker): &mut (TrackedSequence, Tracker<'a>)| {
             let solver = lane.solvers[asked % lane.solvers.len()];
             let answer = tracker.first_contact(&cast.with_solver(solver));
             // `Auto` stands for `Portal`.
@@ -158,7 +158,7 @@ pub(crate) fn judge_answer(
     one_off: &Outcome,
     with_oracle: bool,
 ) -> Result<Agreement, Objection> {
-    let difference = same(answer, one_off).err();
+    let difference = compare_answers(answer, one_off).err();
     let rounding_decides = difference.is_some();
     let judged = judge_alone(judge, answer, with_oracle || rounding_decides);
     let proof = match (judged, difference) {
@@ -192,7 +192,7 @@ fn verify_certificate(judge: &Judge, answer: &Outcome) -> Result<(), Objection> 
 /// Returns an answer without its statistics. The remaining bits must be equal if the same work was done in the
 /// same order.
 #[must_use]
-pub fn without_steps(outcome: &Outcome) -> Outcome {
+pub fn ignoring_steps(outcome: &Outcome) -> Outcome {
     let mut outcome = *outcome;
     match &mut outcome {
         Outcome::Contact(contact) | Outcome::Grazing(Grazing { contact, .. }) => {

@@ -13,10 +13,10 @@
 use glam::DVec3;
 
 use super::ConvexPolyhedron;
-use super::fan::{AboveQuery, FAN, MAX_UNMEASURED_CORNERS};
+use super::fan::{AboveQuery, MAX_SCANNED_NEIGHBOURS, MAX_UNMEASURED_CORNERS};
 use colltrans_kernel::noise;
 use colltrans_kernel::plane::polygon_normal;
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 /// Maximum number of vertices of a plateau that are visited one by one. A larger plateau is bounded by a large face
 /// or by a scan of the whole body.
@@ -48,7 +48,8 @@ struct MaxExcess {
     excess: f64,
 }
 
-/// A face with many corners, or one of the polygons of a body that has few.
+/// A face with many corners, or a face with more than three corners of a body that has few vertices and few such
+/// faces.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LargeFace {
     face: u32,
@@ -103,7 +104,7 @@ impl ConvexPolyhedron {
     /// beyond it. `vertex` is the vertex that a climb has found.
     #[doc(hidden)]
     #[inline]
-    pub fn settled(&self, normal: DVec3, vertex: u32) -> (u32, f64) {
+    pub fn support_with_excess(&self, normal: DVec3, vertex: u32) -> (u32, f64) {
         if self.support.is_scanned() {
             return (vertex, self.scan_excess());
         }
@@ -125,7 +126,7 @@ impl ConvexPolyhedron {
     /// `length` is the length of `normal`. Comparisons are scaled by it, so that they need not wait for a division.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction in memory stalls the scan")]
-    pub(crate) fn support_at(
+    pub(crate) fn support_within(
         &self,
         normal: DVec3,
         length: f64,
@@ -165,7 +166,7 @@ impl ConvexPolyhedron {
         while next < plateau.count {
             let from = plateau.vertices[next];
             let neighbours = self.neighbours(from);
-            if neighbours.len() > FAN {
+            if neighbours.len() > MAX_SCANNED_NEIGHBOURS {
                 let reach = self.inertia.reach;
                 let above = AboveQuery { normal, length, here, least, reach };
                 match self.visit_fan(from, &above, &mut plateau, (highest_vertex, highest)) {
@@ -173,7 +174,7 @@ impl ConvexPolyhedron {
                     None => return self.max_excess_of_large_plateau(normal, length, vertex, most),
                 }
             } else {
-                work::count(neighbours.len());
+                visit_counter::count_visits(neighbours.len());
                 for &w in neighbours {
                     let gained = normal.dot(self.vertices[w as usize] - here);
                     highest_vertex = if gained > highest { w } else { highest_vertex };
@@ -284,7 +285,7 @@ impl ConvexPolyhedron {
         vertex: u32,
         most: f64,
     ) -> Option<MaxExcess> {
-        let outgoing = self.topology.outgoing(vertex);
+        let outgoing = self.topology.outgoing_half_edges(vertex);
         let excess_of = |face: u32| {
             let found = self.large_faces.binary_search_by_key(&face, |large| large.face).ok()?;
             let large = &self.large_faces[found];
@@ -292,7 +293,7 @@ impl ConvexPolyhedron {
             let is_across = normal.dot(large.normal) > MIN_NORMAL_COSINE * length;
             is_across.then(excess).flatten().map(|excess| (face, excess))
         };
-        let (face, excess) = if outgoing.len() > FAN {
+        let (face, excess) = if outgoing.len() > MAX_SCANNED_NEIGHBOURS {
             self.support
                 .fan_of_vertex(vertex)
                 .wide_faces()
@@ -382,7 +383,7 @@ impl ConvexPolyhedron {
                 if value > best.1 { (v, value) } else { best }
             })
         };
-        let first = self.topology.face(face).start;
+        let first = self.topology.face_half_edges(face).start;
         let along = |v: u32| first + corners.iter().position(|&w| w == v).unwrap_or(0) as u32;
         let a = corners[0];
         let (b, length) = farthest(&|p| p.distance(at(a)));

@@ -12,11 +12,11 @@ use glam::DVec3;
 use super::ring::{Cycle, Ring};
 use colltrans_kernel::noise;
 use colltrans_kernel::topology::Topology;
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 /// Maximum number of neighbours of a vertex that is scanned; a vertex with more is searched as a [`Fan`]. Faces
 /// with more corners have a ring.
-pub(crate) const FAN: usize = 32;
+pub(crate) const MAX_SCANNED_NEIGHBOURS: usize = 32;
 
 /// Maximum number of corners of a face that is not measured at three corners.
 pub(super) const MAX_UNMEASURED_CORNERS: usize = 8;
@@ -43,8 +43,8 @@ pub(super) struct Fan {
     wide: Vec<u32>,
 }
 
-/// Query for the neighbours that lie more than `least`, which may be negative, above the point `here` along `normal`. `length` is the
-/// length of `normal`.
+/// Query for the neighbours whose product with `normal` exceeds that of the point `here` by more than `least`, which
+/// may be negative. `length` is the length of `normal`, which is not normalised.
 pub(super) struct AboveQuery {
     pub(super) normal: DVec3,
     pub(super) length: f64,
@@ -70,9 +70,11 @@ impl Fan {
         let corners = neighbours.iter().map(|&w| vertices[w as usize]);
         let (ring, dent) = Ring::new((Cycle::Fan(vertex), neighbours[0]), inward, corners, cut);
         let dent = if least > 0.0 { dent } else { f64::INFINITY };
-        let faces = topology.outgoing(vertex).iter().map(|&h| topology.half_edge(h).face);
-        let wide =
-            faces.filter(|&face| topology.face(face).len() > MAX_UNMEASURED_CORNERS).collect();
+        let faces =
+            topology.outgoing_half_edges(vertex).iter().map(|&h| topology.half_edge(h).face);
+        let wide = faces
+            .filter(|&face| topology.face_half_edges(face).len() > MAX_UNMEASURED_CORNERS)
+            .collect();
         Self { vertex, inward, least, longest, ring, dent, wide }
     }
 
@@ -149,7 +151,7 @@ impl Fan {
                 }
             }
         }
-        work::count(visited);
+        visit_counter::count_visits(visited);
         goes_on
     }
 
@@ -167,9 +169,9 @@ impl Fan {
 #[inline]
 pub(crate) fn cyclic_maximum(count: usize, near: usize, value: impl Fn(usize) -> f64) -> usize {
     let mut best = (near, value(near));
-    work::count(1);
+    visit_counter::count_visits(1);
     let mut rises = |step: usize| {
-        work::count(1);
+        visit_counter::count_visits(1);
         let there = wrapped_index(best.0 + step, count);
         let value = value(there);
         let higher = value > best.1;

@@ -20,12 +20,12 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use crate::body::{Inertia, InputVertex, Kept, VertexId};
+use crate::body::{DerivedDataSlot, Inertia, InputVertex, VertexId};
 pub use build::{ConvexityDefect, OffsetReport, convexity_defect};
 use colltrans_kernel::plane::polygon_normal;
 use colltrans_kernel::topology::{HalfEdge, Topology};
 pub(crate) use excess::LargeFace;
-pub(crate) use fan::{FAN, cyclic_maximum};
+pub(crate) use fan::{MAX_SCANNED_NEIGHBOURS, cyclic_maximum};
 pub(crate) use ring::Rim;
 use sections::SectionIndex;
 pub(crate) use support::MAX_RIMS;
@@ -52,7 +52,8 @@ pub struct ConvexPolyhedron {
     dent: f64,
     /// Upper bound of the distance of a corner from the plane of its polygon.
     flatness: f64,
-    /// Faces with many corners, or all polygons of a body that has few, in ascending order.
+    /// Faces with many corners, in ascending order. On a body with few vertices and few polygons, these are all
+    /// faces with more than three corners.
     large_faces: Vec<LargeFace>,
     topology: Topology,
     inertia: Inertia,
@@ -60,7 +61,7 @@ pub struct ConvexPolyhedron {
     /// Built when [`crate::Solver::Cta`] first needs them. Portal refinement does not use them.
     sections: OnceLock<SectionIndex>,
     /// The body as a solid, built when it is first needed.
-    kept: Kept,
+    kept: DerivedDataSlot,
 }
 
 /// Maximum number of vertices of a body for which a ball gives a guess that is good enough (measured).
@@ -141,7 +142,7 @@ impl ConvexPolyhedron {
     /// # Panics
     /// If `face` is not below [`Self::face_count`].
     pub fn face_half_edges(&self, face: u32) -> Range<u32> {
-        self.topology.face(face)
+        self.topology.face_half_edges(face)
     }
 
     /// Returns the half-edges that leave `vertex`, in the order of its [`Self::neighbours`]. An end of a segment has
@@ -150,7 +151,7 @@ impl ConvexPolyhedron {
     /// # Panics
     /// If `vertex` is not below the number of vertices.
     pub fn outgoing(&self, vertex: u32) -> &[u32] {
-        self.topology.outgoing(vertex)
+        self.topology.outgoing_half_edges(vertex)
     }
 
     /// Returns the hull error, an upper bound of two distances, in the unit of the input:
@@ -250,24 +251,24 @@ impl ConvexPolyhedron {
         self.support.farthest_vertex_near(&self.vertices, &self.topology, direction, near)
     }
 
-    /// Checks whether the body is so small and round that a guess from its inertia ellipsoid is hardly better than
-    /// one from a ball.
+    /// Checks whether the body has so few vertices and is so round that a guess from a ball suffices in place of one
+    /// from its inertia ellipsoid.
     #[inline]
     pub(crate) fn is_like_ball(&self) -> bool {
-        self.vertices.len() <= MAX_BALL_VERTICES && self.inertia.round
+        self.vertices.len() <= MAX_BALL_VERTICES && self.inertia.is_round
     }
 
     /// Checks whether the body may have rims: faces with many corners or vertices with many neighbours, to which a
     /// ring of vertices belongs.
     #[inline]
-    pub(crate) fn has_rims(&self) -> bool {
+    pub(crate) fn may_have_rims(&self) -> bool {
         self.support.has_rings()
     }
 
     /// Returns at most [`MAX_RIMS`] rims and points whose hull approximates the body. The iterator is empty if
     /// there is no such approximation.
     #[inline]
-    pub(crate) fn outline(&self) -> impl ExactSizeIterator<Item = Rim> {
+    pub(crate) fn rim_outline(&self) -> impl ExactSizeIterator<Item = Rim> {
         let known = self.support.outline();
         let few = known.is_empty() && self.vertices.len() <= MAX_RIMS;
         let count = if few { self.vertices.len() } else { known.len() };
@@ -333,7 +334,7 @@ impl ConvexPolyhedron {
 
     /// Returns the cache for structures that other crates derive from the body.
     #[doc(hidden)]
-    pub fn kept(&self) -> &Kept {
+    pub fn kept(&self) -> &DerivedDataSlot {
         &self.kept
     }
 

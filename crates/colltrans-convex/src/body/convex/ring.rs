@@ -15,7 +15,7 @@ use glam::{DVec2, DVec3};
 
 use colltrans_kernel::plane::polygon_normal;
 use colltrans_kernel::topology::Topology;
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 /// Maximum deviation of a corner from an ellipse, relative to its size, up to which the ring counts as round.
 const MAX_RIM_DEVIATION: f64 = 0.02;
@@ -140,7 +140,7 @@ impl Rim {
 impl Ring {
     /// Builds the ring of a face's corners.
     pub(super) fn from_face(vertices: &[DVec3], topology: &Topology, face: u32) -> Self {
-        let range = topology.face(face);
+        let range = topology.face_half_edges(face);
         Self::from_cycle(vertices, topology, Cycle::Face(range.start), range.len() as u32)
     }
 
@@ -150,7 +150,7 @@ impl Ring {
         topology: &Topology,
         face: u32,
     ) -> Option<Self> {
-        let range = topology.face(face);
+        let range = topology.face_half_edges(face);
         let (cycle, count) = (Cycle::AdjacentToFace(range.start), range.len() as u32);
         let repeats =
             |k| cycle.vertex_at(topology, k) == cycle.vertex_at(topology, (k + 1) % count);
@@ -228,7 +228,7 @@ impl Ring {
     fn farthest_corner(&self, direction: DVec3, rises: impl Fn(u32, u32) -> bool) -> u32 {
         let (mut low, mut high) = self.candidate_range(direction);
         while low < high {
-            work::count(1);
+            visit_counter::count_visits(1);
             let middle = u32::midpoint(low, high);
             if rises(self.corner_number(middle), self.corner_number(middle + 1)) {
                 low = middle + 1;

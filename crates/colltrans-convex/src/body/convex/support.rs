@@ -3,7 +3,8 @@
 //! 1. A *table* over directions returns a vertex that is the support point of a nearby direction. It is an
 //!    octahedral map of the normalised directions `L^T n`, where `L L^T` is the matrix of the inertia ellipsoid.
 //! 2. A *climb* along edges, always to the steepest neighbour, ends at the support point, because on a convex body
-//!    each local maximum is global. Solvers that know a vertex nearby start there, without the table.
+//!    each local maximum is global. A search that is given a vertex nearby starts there, and reads the table only if
+//!    the climb takes [`MAX_GUESS_STEPS`] steps or more.
 //! 3. Faces with many corners and vertices with many neighbours are searched by angle ([`ring`](super::ring),
 //!    [`fan`](super::fan)). A climb along them would take linear time.
 //!
@@ -14,12 +15,12 @@ use std::hint::select_unpredictable;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::fan::{FAN, Fan};
+use super::fan::{Fan, MAX_SCANNED_NEIGHBOURS};
 use super::ring::{Rim, Ring};
 use crate::body::Inertia;
 use colltrans_kernel::noise;
 use colltrans_kernel::topology::Topology;
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 /// Maximum number of vertices of a body whose support points are found by a scan (measured).
 const SCAN_LIMIT: usize = 20;
@@ -188,10 +189,10 @@ impl SupportIndex {
     ) -> (u32, usize) {
         let mut at = start;
         for steps in 0..limit {
-            work::count(1);
+            visit_counter::count_visits(1);
             let origin = vertices[at as usize];
             let neighbours = topology.neighbours(at);
-            let (best, gain) = if neighbours.len() <= FAN {
+            let (best, gain) = if neighbours.len() <= MAX_SCANNED_NEIGHBOURS {
                 steepest_neighbour(vertices, neighbours, origin, direction)
             } else {
                 let best = neighbours
@@ -363,7 +364,7 @@ impl SupportIndex {
         direction: DVec3,
     ) -> (usize, usize) {
         let count = topology.neighbours(vertex).len();
-        if count <= FAN {
+        if count <= MAX_SCANNED_NEIGHBOURS {
             return (0, count);
         }
         let best = self.fan_of_vertex(vertex).steepest_edge_position(vertices, topology, direction);
@@ -597,7 +598,7 @@ fn steepest_neighbour(
 /// Builds the fans of all vertices with more than [`FAN`] neighbours.
 fn build_fans(vertices: &[DVec3], topology: &Topology) -> Vec<Fan> {
     (0..topology.vertex_count() as u32)
-        .filter(|&v| topology.neighbours(v).len() > FAN)
+        .filter(|&v| topology.neighbours(v).len() > MAX_SCANNED_NEIGHBOURS)
         .map(|v| Fan::new(vertices, topology, v))
         .collect()
 }
@@ -605,8 +606,10 @@ fn build_fans(vertices: &[DVec3], topology: &Topology) -> Vec<Fan> {
 /// Builds the rings of all faces with more than [`FAN`] corners, followed by the rings adjacent to such faces that
 /// have a vertex outside them.
 fn build_rings(vertices: &[DVec3], topology: &Topology) -> Vec<Ring> {
-    let large_faces =
-        || (0..topology.face_count() as u32).filter(|&f| topology.face(f).len() > FAN);
+    let large_faces = || {
+        (0..topology.face_count() as u32)
+            .filter(|&f| topology.face_half_edges(f).len() > MAX_SCANNED_NEIGHBOURS)
+    };
     let mut rings: Vec<Ring> =
         large_faces().map(|f| Ring::from_face(vertices, topology, f)).collect();
     if rings.is_empty() {

@@ -159,9 +159,9 @@ impl Iterator for SideChanges<'_> {
     }
 }
 
-/// Finds the face on which a section edge lies. Returns a half-edge of the face, and the orientation of its
-/// boundary in the plane of the position along the edge and the level: 1 if counter-clockwise, else -1. `None`
-/// if the mesh edges at the ends of the section edge do not bound a common face.
+/// Finds the face on which a section edge lies. Returns a half-edge of this face and a sign. The sign is 1 if the
+/// boundary of the face is counter-clockwise in the plane whose axes are the position along the section edge and the
+/// level, else -1. `None` if the mesh edges at the ends of the section edge do not bound a common face.
 pub(super) fn face_of_edge(side: &SectionedBody, edge: &SectionEdge) -> Option<(u32, f64)> {
     let topology = side.topology;
     let face = |h: u32| topology.half_edge(h).face;
@@ -253,7 +253,7 @@ impl ContactCell {
         }
         let (half_edge, sense) = face_of_edge(side, contact.edge)?;
         let topology = side.topology;
-        let boundary = topology.face(topology.half_edge(half_edge).face);
+        let boundary = topology.face_half_edges(topology.half_edge(half_edge).face);
         if boundary.len() > MAX_FACE_SIDES {
             return None;
         }

@@ -133,8 +133,9 @@ impl ExitTest<'_, '_> {
         })
     }
 
-    /// Returns where the contact continues on the faces of these half-edges. The level of a vertex
-    /// is kept if the face is above, which cuts just above the vertex, and else replaced by the next lower number.
+    /// Returns where the contact continues on the faces of these half-edges. A section at the level of a vertex lies
+    /// just above the vertex. Therefore this level is kept if the half-edge leads upwards, and else replaced by the
+    /// next lower number.
     fn descent_over(&self, features: [Feature; 2], faces: [u32; 2], levels: [f64; 2]) -> Descent {
         let level = |body: usize| match features[body] {
             Feature::Vertex(v) => {
@@ -231,7 +232,7 @@ impl ExitTest<'_, '_> {
             return CommonNormal::Undecided;
         }
         // The sum of the coordinates bounds the length of the normal without a square root (the paper, V-A).
-        let noise = self.setting.noise().point() * normal.abs().element_sum();
+        let noise = self.setting.noise().point_error() * normal.abs().element_sum();
         let farthest = [0, 1].map(|body| {
             let outward = self.in_body_frame(body, if body == 0 { normal } else { -normal });
             self.farthest_step(body, outward, features[body])
@@ -289,7 +290,7 @@ impl ExitTest<'_, '_> {
         if steps(0) + steps(1) > MAX_FEATURE_STEPS {
             return None;
         }
-        let noise = self.setting.noise().point();
+        let noise = self.setting.noise().point_error();
         let mut normals = LevelRegion::from_rectangle(
             DVec2::splat(-MAX_LATERAL_PART),
             DVec2::splat(MAX_LATERAL_PART),
@@ -321,7 +322,7 @@ impl ExitTest<'_, '_> {
         let here = self.first_vertex(body, feature);
         match feature {
             Feature::Vertex(v) => {
-                let steps = topology.neighbours(v).iter().zip(topology.outgoing(v));
+                let steps = topology.neighbours(v).iter().zip(topology.outgoing_half_edges(v));
                 steps.for_each(|(&to, &h)| visit(self.vertex_difference(body, here, to), h));
             }
             Feature::Edge(h) => {
@@ -400,16 +401,22 @@ impl ExitTest<'_, '_> {
                     [topology.origin(h), topology.target(h)]
                 };
                 let (p, q) = (ends(0, e), ends(1, f));
-                let pair = |i: usize, j: usize| VertexPair::of(p[i], q[j]);
+                let pair = |i: usize, j: usize| VertexPair::from_indices(p[i], q[j]);
                 Some([pair(0, 0), pair(1, 0), pair(1, 1), pair(0, 1)])
             }
             [Feature::Vertex(moving), Feature::Face(h)] => {
                 let at = self.vertex_position(0, moving) - self.setting.offset;
-                Some(self.face_corners_around(1, h, at).map(|fixed| VertexPair::of(moving, fixed)))
+                Some(
+                    self.face_corners_around(1, h, at)
+                        .map(|fixed| VertexPair::from_indices(moving, fixed)),
+                )
             }
             [Feature::Face(h), Feature::Vertex(fixed)] => {
                 let at = self.vertex_position(1, fixed) + self.setting.offset;
-                Some(self.face_corners_around(0, h, at).map(|moving| VertexPair::of(moving, fixed)))
+                Some(
+                    self.face_corners_around(0, h, at)
+                        .map(|moving| VertexPair::from_indices(moving, fixed)),
+                )
             }
             _ => None,
         }
@@ -420,7 +427,7 @@ impl ExitTest<'_, '_> {
     /// the line.
     fn face_corners_around(&self, body: usize, half_edge: u32, point: DVec3) -> [u32; 4] {
         let topology = self.sides[body].topology;
-        let boundary = topology.face(topology.half_edge(half_edge).face);
+        let boundary = topology.face_half_edges(topology.half_edge(half_edge).face);
         let corner = |i: u32| topology.origin(boundary.start + i);
         let count = boundary.len() as u32;
         if count == 3 {

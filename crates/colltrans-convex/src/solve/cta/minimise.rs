@@ -18,9 +18,9 @@ use super::piece::{Affine, LinearPiece};
 use super::planar::{self, PlanarAnswer, PlanarHint};
 use super::region::{LevelRegion, Neighbourhood};
 use super::section_pair::SectionPair;
-use super::start::Origin;
+use super::start::MinimisationStart;
 use crate::setting::Setting;
-use crate::solve::observe::{Cut, Observer, Phase, PlanarProblem, Touch, Watch};
+use crate::solve::observe::{Cut, Observer, Phase, PlanarProblem, SectionContact, Watch};
 
 /// Extent of the remaining levels, in multiples of `SectionedBody::near_distance`, up to which a shift
 /// continues into neighbouring cells (measured).
@@ -32,7 +32,7 @@ const MAX_CELLS: u32 = 16;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MinimisationOptions {
     /// First levels.
-    pub(crate) start: Origin,
+    pub(crate) start: MinimisationStart,
     /// Difference of the upper and the lower bound at which the minimisation ends, as a share of the extent of
     /// both bodies along the direction.
     pub(crate) gap: f64,
@@ -46,7 +46,7 @@ pub(crate) struct MinimisationOptions {
 
 /// Result of a minimisation.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Guess {
+pub(crate) enum ContactGuess {
     /// The bodies seem to meet. The contact normal `n` is in the setting frame, with `n . d = 1` instead of
     /// length 1.
     Contact { normal: DVec3 },
@@ -62,7 +62,7 @@ type FeatureVertices = [[u32; 4]; 2];
 /// Result of a minimisation, with its bounds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NarrowedSearch {
-    pub(crate) guess: Guess,
+    pub(crate) guess: ContactGuess,
     /// The two mesh edges of each body nearest to the contact or to the separating plane.
     pub(crate) vertices: FeatureVertices,
     /// Part of the face of the Minkowski difference that contains the line, if the exit test ended the search.
@@ -82,7 +82,7 @@ impl NarrowedSearch {
     /// Returns the result of a search for which no section was found.
     fn without_sections() -> Self {
         Self {
-            guess: Guess::Nothing,
+            guess: ContactGuess::Nothing,
             vertices: FeatureVertices::default(),
             corners: None,
             upper: f64::INFINITY,
@@ -98,7 +98,7 @@ pub(crate) fn minimise<O: Observer>(
     watch: &mut Watch<O>,
 ) -> NarrowedSearch {
     let sections = SectionPair::new(setting);
-    watch.ended(Phase::Setup);
+    watch.phase_ended(Phase::Setup);
     let narrowed = sections.minimise_phi(options, watch);
     let inner = sections.sides.each_ref().map(|side| side.iterations.get());
     watch.steps.iterations += inner[0] + inner[1];
@@ -117,7 +117,7 @@ impl SectionPair<'_> {
         let levels = initial.levels.to_array();
         let hint = if options.starts_cold { PlanarHint::NONE } else { initial.hint };
         let first = planar::solve_planar(&self.sides, levels, &hint);
-        watch.ended(Phase::Planar);
+        watch.phase_ended(Phase::Planar);
         let Some(first) = first else {
             watch.planar_problem(|| PlanarProblem::hidden(levels));
             return NarrowedSearch::without_sections();
@@ -152,8 +152,8 @@ impl SectionPair<'_> {
 struct Minimisation<'q, 'a, 'o, O> {
     sections: &'q SectionPair<'a>,
     region: LevelRegion,
-    /// Levels that are searched first, until the way from their centre to the centroid no longer leaves them
-    /// within the region.
+    /// Levels that are searched first. They are dropped when the segment from their centre to the centroid of the
+    /// region leaves them outside the region (`next_cut_point`).
     neighbourhood: Option<Neighbourhood>,
     keeps_to_cell: bool,
     cuts: Cuts,
@@ -199,13 +199,13 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
     fn solve_planar_problems(&mut self, gap: f64) {
         while self.steps < MAX_STEPS && self.upper - self.lower_bound() > gap {
             let Some(at) = self.next_cut_point() else { break };
-            self.watch.ended(Phase::Region);
+            self.watch.phase_ended(Phase::Region);
             let levels = (self.sections.origin + at).to_array();
             let below =
                 self.bound.as_ref().map_or(f64::NEG_INFINITY, |bound| bound.lower_bound_at(at));
             let height = below - self.sections.frame.base_height(levels);
             self.steps += 1;
-            self.watch.ended(Phase::Bound);
+            self.watch.phase_ended(Phase::Bound);
             let sides = &self.sections.sides;
             let (at_last, last) = &self.last;
             let hint = if self.starts_cold {
@@ -214,7 +214,7 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
                 last.hint_for_levels(*at_last, levels, height)
             };
             let answer = planar::solve_planar(sides, levels, &hint);
-            self.watch.ended(Phase::Planar);
+            self.watch.phase_ended(Phase::Planar);
             let Some(answer) = answer else {
                 self.watch.planar_problem(|| PlanarProblem::hidden(levels));
                 break;
@@ -255,7 +255,7 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
     fn apply_answer(&mut self, at: DVec2, levels: [f64; 2], answer: &PlanarAnswer) -> bool {
         let local = answer.linear_piece(&self.sections.frame, levels);
         self.shift_to_best_point(levels, answer, &local);
-        self.watch.ended(Phase::Cell);
+        self.watch.phase_ended(Phase::Cell);
         if self.solved.is_some() {
             return false;
         }
@@ -271,7 +271,7 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         self.region.cut_by(bound.gradient, limit - bound.value);
         let sides = &mut self.watch.steps.region_sides;
         *sides = self.region.side_count().max(*sides);
-        self.watch.ended(Phase::Region);
+        self.watch.phase_ended(Phase::Region);
         let half = self.sections.half;
         let all = self.bound.get_or_insert_with(|| LowerBound::new([-half, half], self.floor));
         let progress = all.add_piece(LinearPiece { bound, ..local });
@@ -284,7 +284,7 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             lower: lower + constant,
             upper: self.upper + constant,
         });
-        self.watch.ended(Phase::Bound);
+        self.watch.phase_ended(Phase::Bound);
         if let BoundStatus::Contradiction(normal) = progress {
             self.contradiction = Some(normal);
             return false;
@@ -400,16 +400,16 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         let constant = self.sections.constant;
         let upper = self.upper + constant;
         if let Some(SolvedContact { normal, vertices, corners }) = self.solved {
-            let guess = Guess::Contact { normal };
+            let guess = ContactGuess::Contact { normal };
             return NarrowedSearch { guess, vertices, corners, upper, lower: upper };
         }
         let (guess, vertices) = match (self.best, self.last_separation) {
-            (Some(best), _) => (Guess::Contact { normal: self.lower_bound_normal() }, best),
+            (Some(best), _) => (ContactGuess::Contact { normal: self.lower_bound_normal() }, best),
             (None, Some((features, normal))) => {
                 let direction = self.contradiction.unwrap_or(normal);
-                (Guess::Separation { direction }, features)
+                (ContactGuess::Separation { direction }, features)
             }
-            (None, None) => (Guess::Nothing, FeatureVertices::default()),
+            (None, None) => (ContactGuess::Nothing, FeatureVertices::default()),
         };
         let lower = self.lower_bound() + constant;
         NarrowedSearch { guess, vertices, corners: None, upper, lower }
@@ -417,11 +417,11 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
 }
 
 impl PlanarAnswer {
-    fn touch_kind(&self) -> Touch {
+    fn touch_kind(&self) -> SectionContact {
         match self {
-            Self::Edges { .. } => Touch::Edges,
-            Self::Vertex { .. } => Touch::Vertex,
-            Self::Separated { .. } => Touch::Separated,
+            Self::Edges { .. } => SectionContact::Edges,
+            Self::Vertex { .. } => SectionContact::Vertex,
+            Self::Separated { .. } => SectionContact::Separated,
         }
     }
 

@@ -27,8 +27,8 @@ mod start;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use minimise::{Guess, MinimisationOptions, minimise};
-pub(crate) use start::{Origin, RegionFocus};
+pub(crate) use minimise::{ContactGuess, MinimisationOptions, minimise};
+pub(crate) use start::{LastSolution, MinimisationStart};
 
 /// Maximum number of planar problems in a query. 40 cuts through centroids leave less than
 /// `(1 - 1/e)^40 < 2e-8` of the region.

@@ -172,7 +172,7 @@ impl From<Until> for UntilRecord {
 
 #[cfg(feature = "serde")]
 impl TryFrom<UntilRecord> for Until {
-    type Error = NoUntil;
+    type Error = InvalidUntil;
 
     fn try_from(record: UntilRecord) -> Result<Self, Self::Error> {
         match record {
@@ -182,12 +182,15 @@ impl TryFrom<UntilRecord> for Until {
     }
 }
 
-colltrans_kernel::written::named!("start", Start { Center: "center", Ellipsoids: "ellipsoids" });
+colltrans_kernel::serialization::named!(
+    "start",
+    Start { Center: "center", Ellipsoids: "ellipsoids" }
+);
 
 /// Error for a text that is not a valid [`Until`].
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("invalid end {text:?}; accepted: `exit`, or a number that is not negative")]
-pub struct NoUntil {
+pub struct InvalidUntil {
     /// The rejected text.
     pub text: String,
 }
@@ -202,13 +205,13 @@ impl std::fmt::Display for Until {
 }
 
 impl std::str::FromStr for Until {
-    type Err = NoUntil;
+    type Err = InvalidUntil;
 
-    fn from_str(text: &str) -> Result<Self, NoUntil> {
+    fn from_str(text: &str) -> Result<Self, InvalidUntil> {
         if text == "exit" {
             return Ok(Self::Exit);
         }
         let gap = text.parse().ok().filter(|gap: &f64| *gap >= 0.0);
-        gap.map(Self::Gap).ok_or_else(|| NoUntil { text: text.into() })
+        gap.map(Self::Gap).ok_or_else(|| InvalidUntil { text: text.into() })
     }
 }

@@ -1,7 +1,7 @@
 //! Pieces: `phi` is affine where the features in contact stay the same (the paper, section III-C).
 //!
-//! `(X, Y) = (x - x0, y - y0)` are the levels relative to the levels `(x0, y0)` of a planar problem. A *piece* is an affine
-//! function of them with a weight:
+//! `(X, Y) = (x - x0, y - y0)` are the levels relative to the levels `(x0, y0)` of a planar problem. A *piece* is an
+//! affine function of `(X, Y)` with a weight:
 //! - weight 1: bounds `phi` from below,
 //! - weight 0: positive only where the sections have no point in common.
 //!

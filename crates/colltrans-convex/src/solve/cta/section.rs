@@ -123,8 +123,10 @@ impl Section<'_> {
                 if let Some(found) = search.crossing_along_faces(up) {
                     return Some(found);
                 }
-                if step == STEPS_BEFORE_SEARCH || topology.outgoing(vertex).len() > MAX_FAN {
-                    return search.near(up);
+                if step == STEPS_BEFORE_SEARCH
+                    || topology.outgoing_half_edges(vertex).len() > MAX_FAN
+                {
+                    return search.any_crossing_edge(up);
                 }
             }
             let h = self.best_edge_toward_level(vertex, sign, &score)?;
@@ -146,7 +148,9 @@ impl Section<'_> {
         let start = self.side.level_point(vertex);
         let mut best = f64::INFINITY;
         let mut found = None;
-        for (&h, &neighbour) in topology.outgoing(vertex).iter().zip(topology.neighbours(vertex)) {
+        for (&h, &neighbour) in
+            topology.outgoing_half_edges(vertex).iter().zip(topology.neighbours(vertex))
+        {
             let end = self.side.level_point(neighbour);
             let rise = end.level - start.level;
             let drift = (end.shadow.x - start.shadow.x) / rise;
@@ -168,7 +172,7 @@ impl Section<'_> {
     ) -> Option<Crossing> {
         let search = self.side.chain_search(self.level)?;
         let mut last = *from;
-        search.last(from.half_edge, self.side.turn_up_chain(chain), |up| {
+        search.last_while(from.half_edge, self.side.turn_up_chain(chain), |up| {
             let crossing = self.section_vertex(up);
             let found = holds(&crossing);
             last = if found { crossing } else { last };
@@ -344,7 +348,7 @@ impl Section<'_> {
     /// than [`MAX_FACE_SIDES`] sides, a face that the level does not cut, or a horizontal edge.
     pub(super) fn edge_on_face(&self, half_edge: u32) -> Option<(Chain, SectionEdge)> {
         let topology = self.side.topology;
-        let boundary = topology.face(topology.half_edge(half_edge).face);
+        let boundary = topology.face_half_edges(topology.half_edge(half_edge).face);
         if boundary.len() > MAX_FACE_SIDES {
             return None;
         }

@@ -30,7 +30,7 @@ impl<'a> SectionPair<'a> {
     /// Chooses the section axes, and places both bodies in section coordinates.
     pub(super) fn new(setting: &'a Setting<'a>) -> Self {
         let d = setting.unit;
-        let pair = AxisPair::choose(&setting.moving_matrix, &setting.fixed_matrix, d);
+        let pair = AxisPair::most_general(&setting.moving_matrix, &setting.fixed_matrix, d);
         let along = [pair.moving.1.dot(d), pair.fixed.1.dot(d)];
         let axes = [pair.moving.1 / along[0], pair.fixed.1 / along[1]];
         let c = axes[0] - axes[1];

@@ -8,7 +8,7 @@ use std::cell::Cell;
 use glam::{DVec2, DVec3};
 
 use super::crossing::Chain;
-use crate::body::convex::sections::{AxisSections, Search, SectionMap, Turn};
+use crate::body::convex::sections::{AxisSections, ChainSearch, SectionMap, Turn};
 use colltrans_kernel::topology::Topology;
 
 /// Distance between two levels that count as near, in mean edges (measured).
@@ -75,10 +75,10 @@ impl<'a> SectionedBody<'a> {
     pub(super) fn chain_search(
         &self,
         x: f64,
-    ) -> Option<Search<'a, impl Fn(u32) -> f64, impl Fn(u32)>> {
+    ) -> Option<ChainSearch<'a, impl Fn(u32) -> f64, impl Fn(u32)>> {
         let chains = self.sections.chains()?;
         let topology = self.topology;
-        Some(Search {
+        Some(ChainSearch {
             chains,
             topology,
             x,
@@ -115,7 +115,7 @@ impl<'a> SectionedBody<'a> {
 
     /// Returns a half-edge upwards of some edge at a vertex.
     pub(super) fn upward_edge_at(&self, vertex: u32) -> u32 {
-        let h = self.topology.outgoing(vertex)[0];
+        let h = self.topology.outgoing_half_edges(vertex)[0];
         let is_up = self.vertex_level(self.topology.target(h)) > self.vertex_level(vertex);
         if is_up { h } else { self.topology.half_edge(h).twin }
     }

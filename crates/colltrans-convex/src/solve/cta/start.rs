@@ -11,16 +11,16 @@ use crate::setting::VertexPair;
 
 /// Choice of the first levels of a minimisation.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Origin {
+pub(crate) enum MinimisationStart {
     /// The middle of the levels.
     Center,
     /// The solution of an earlier query.
-    Region(RegionFocus),
+    Region(LastSolution),
 }
 
 /// The solution of an earlier query.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct RegionFocus {
+pub(crate) struct LastSolution {
     /// Points of contact, in the frames of P and of Q.
     pub(crate) touching: [DVec3; 2],
     /// Half-side `delta` of the square around the solution that is searched first, a length.
@@ -48,15 +48,15 @@ pub(super) struct InitialState {
 
 impl SectionPair<'_> {
     /// Returns the first state for an origin.
-    pub(super) fn initial_state(&self, origin: &Origin) -> InitialState {
+    pub(super) fn initial_state(&self, origin: &MinimisationStart) -> InitialState {
         match origin {
-            Origin::Center => InitialState {
+            MinimisationStart::Center => InitialState {
                 floor: self.trivial_bound(),
                 levels: self.origin,
                 neighbourhood: None,
                 hint: PlanarHint::NONE,
             },
-            Origin::Region(focus) => {
+            MinimisationStart::Region(focus) => {
                 let levels = self.inner_levels(focus.touching);
                 let half = focus.half_side * AXIS_LENGTH;
                 let neighbourhood = Some(Neighbourhood { center: levels - self.origin, half });
@@ -68,11 +68,11 @@ impl SectionPair<'_> {
 
     /// Builds a hint from an earlier solution: the sections face each other along its normal, at the height of
     /// its points of contact.
-    fn facing_hint(&self, focus: &RegionFocus, levels: [f64; 2]) -> PlanarHint {
+    fn facing_hint(&self, focus: &LastSolution, levels: [f64; 2]) -> PlanarHint {
         let normal = self.setting.moving_matrix * focus.normal;
         let lateral = normal - self.frame.axes[0] * normal.dot(self.setting.unit);
         let right = usize::from(lateral.dot(self.frame.shadow[1]) > 0.0);
-        let vertices = focus.pair.numbers();
+        let vertices = focus.pair.indices();
         let [p, q] = [0, 1].map(|body| self.sides[body].point_height(focus.touching[body]));
         let edges = [0, 1].map(|body| self.sides[body].upward_edge_at(vertices[body]));
         PlanarHint { height: p.max(q), levels, last: LastAnswer::Facing { right, edges } }

@@ -10,7 +10,7 @@ use super::planar::{self, LastAnswer, PlanarAnswer, PlanarHint};
 use super::section::Section;
 use super::section_pair::SectionPair;
 use super::sectioned_body::SectionedBody;
-use super::{Guess, MinimisationOptions, Origin};
+use super::{ContactGuess, MinimisationOptions, MinimisationStart};
 use crate::answer::Steps;
 use crate::body::ConvexPolyhedron;
 use crate::body::Pose;
@@ -117,7 +117,7 @@ fn brute_force_contact(p: &PlacedMesh, q: &PlacedMesh, d: DVec3) -> BruteForce {
 }
 
 const EXACT: MinimisationOptions = MinimisationOptions {
-    start: Origin::Center,
+    start: MinimisationStart::Center,
     gap: 1e-10,
     keeps_to_cell: false,
     cuts: Cuts::Shifted,
@@ -137,7 +137,7 @@ fn check_against_brute_force(
     let truth =
         brute_force_contact(&PlacedMesh::new(p, p_pose), &PlacedMesh::new(q, q_pose), setting.unit);
     match (&truth, narrowed.guess) {
-        (BruteForce::Contact(t), Guess::Contact { normal }) => {
+        (BruteForce::Contact(t), ContactGuess::Contact { normal }) => {
             assert!((narrowed.upper - t).abs() <= tolerance, "{name}: {truth:?} {narrowed:?}");
             assert!((narrowed.lower - t).abs() <= tolerance, "{name}: {truth:?} {narrowed:?}");
             assert!((normal.dot(setting.unit) - 1.0).abs() < 1e-6, "{name}: {narrowed:?}");
@@ -153,7 +153,7 @@ fn check_against_brute_force(
                 of_q - of_p
             );
         }
-        (BruteForce::Separated, Guess::Separation { .. }) | (BruteForce::Grazing, _) => {}
+        (BruteForce::Separated, ContactGuess::Separation { .. }) | (BruteForce::Grazing, _) => {}
         _ => panic!("{name}: {truth:?} {narrowed:?}"),
     }
     narrowed
@@ -259,7 +259,7 @@ fn needles_plates_and_large_caps_have_certified_bounds() {
         let (p, q) = (PlacedMesh::new(p, &poses[0]), PlacedMesh::new(q, &poses[1]));
         let size = p.vertices.iter().chain(&q.vertices).map(|v| v.length()).fold(0.0, f64::max);
         // Both centres are on the line, therefore the bodies meet.
-        let Guess::Contact { normal } = narrowed.guess else {
+        let ContactGuess::Contact { normal } = narrowed.guess else {
             panic!("round {round}: {narrowed:?}")
         };
         let proven = bound_proven_by(normal, &p, &q, setting.unit);

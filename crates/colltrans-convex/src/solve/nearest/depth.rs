@@ -3,8 +3,8 @@
 //!
 //! A polytope of points of `M` grows at its face nearest to the origin. The support point beyond this face joins the
 //! polytope, with a fan of triangles to the horizon of the faces that have this point in front. The *height* of a
-//! triangle for a unit vector `n` is the smallest `n.m` of its corners `m`. `n` is the triangle's own outward normal,
-//! or, if the triangle has hardly any area, that of a neighbour.
+//! triangle for a unit vector `n` is the smallest `n.m` of its corners `m`. `n` is the triangle's own outward normal.
+//! If the triangle cannot grow, `n` becomes the normal of a neighbour if this increases the height.
 //!
 //! Invariant: the returned bounds hold, regardless of the errors that rounding causes in the polytope.
 //! - *Lower*: the smallest height, lowered by its rounding error. Proven by a closed surface around the origin.
@@ -89,12 +89,12 @@ pub(crate) fn penetration_depth(
         excess: 0.0,
         supports: found.supports,
     };
-    if let Some(plane) = found.plane(difference) {
+    if let Some(plane) = found.gap_plane(difference) {
         best.record_plane(-plane.gap.normal, -plane.gap.gap, plane.excess);
     }
     let pairs: Vec<VertexPair> = found.weighted_pairs().collect();
     grow_from(difference, &pairs, &mut best, enough);
-    if best.lower <= enough && best.upper - best.lower > MAX_GAP * difference.noise.point() {
+    if best.lower <= enough && best.upper - best.lower > MAX_GAP * difference.noise.point_error() {
         // Thin triangles may prevent growth. A polytope that starts elsewhere has other triangles.
         let first = difference.support_point(-best.outward, None).pair;
         best.supports += 1;
@@ -142,7 +142,8 @@ impl<'a> Polytope<'a> {
         for pair in pairs {
             new.add_point(PolytopeVertex { at: difference.point(*pair), pair: *pair });
         }
-        if new.points.len() < 4 || new.fourth_point_height() <= 8.0 * difference.noise.point() {
+        if new.points.len() < 4 || new.fourth_point_height() <= 8.0 * difference.noise.point_error()
+        {
             new.points.truncate(1);
             new.pairs.truncate(1);
             new.add_distant_points(best)?;
@@ -188,7 +189,7 @@ impl<'a> Polytope<'a> {
                 }
                 _ => vec![unit_vector(triangle_normal([first, self.points[1], self.points[2]]))?],
             };
-            let (mut farthest, mut largest) = (None, 8.0 * self.difference.noise.point());
+            let (mut farthest, mut largest) = (None, 8.0 * self.difference.noise.point_error());
             for outward in axes.into_iter().flat_map(|axis| [axis, -axis]) {
                 let point = self.support_point(outward, self.pairs[0], best);
                 let away = outward.dot(point.at - first);
@@ -222,7 +223,7 @@ impl<'a> Polytope<'a> {
         }
         let (pair, excess) = bodies.support_with_excess(&normals, found);
         let at = if pair == found { at } else { self.difference.point(pair) };
-        let raised = (outward.dot(at) + noise.lowered() + excess).next_up();
+        let raised = (outward.dot(at) + noise.lower_bound_margin() + excess).next_up();
         best.record_plane(outward, raised, excess);
         PolytopeVertex { at, pair }
     }
@@ -249,7 +250,7 @@ impl<'a> Polytope<'a> {
     /// Grows the polytope at its nearest triangle, until the bounds meet, the height exceeds `enough`, or no triangle
     /// can grow.
     fn grow_at_nearest(&mut self, best: &mut DepthBounds, enough: f64) {
-        let noise = self.difference.noise.point();
+        let noise = self.difference.noise.point_error();
         let enough = enough + 2.0 * self.difference.noise.height_margin();
         for _ in 0..MAX_STEPS {
             let nearest = self.nearest_triangle();
@@ -309,7 +310,7 @@ impl<'a> Polytope<'a> {
     ///
     /// Returns `false`, without a change of the triangles, if the result would not be a surface.
     fn insert_point(&mut self, nearest: usize, point: PolytopeVertex) -> bool {
-        let noise = self.difference.noise.point();
+        let noise = self.difference.noise.point_error();
         for triangle in &mut self.triangles {
             triangle.is_visible = triangle.normal.dot(point.at) - triangle.height > noise;
         }
@@ -366,7 +367,7 @@ impl<'a> Polytope<'a> {
     fn is_on_line(&self, x: u32, y: u32, at: DVec3) -> bool {
         let [x, y] = [x, y].map(|k| self.points[k as usize]);
         let edge = y - x;
-        let noise = self.difference.noise.point();
+        let noise = self.difference.noise.point_error();
         edge.cross(at - x).length_squared() <= noise * noise * edge.length_squared()
     }
 

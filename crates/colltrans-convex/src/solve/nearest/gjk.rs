@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::simplex::{Corner, Simplex};
 use super::{DescentResult, Difference};
 use crate::setting::VertexPair;
-use colltrans_kernel::real::{Real, Twice, Vector};
+use colltrans_kernel::real::{DoubleWord, Real, RealVector};
 
 /// Maximum number of steps, above all that were observed.
 const MAX_STEPS: usize = 128;
@@ -39,7 +39,7 @@ impl Goal {
 /// Number type of the coordinates of a point of `M`.
 pub(super) trait Coordinate: Real {
     /// Computes the point of a vertex pair.
-    fn point(difference: &Difference, pair: VertexPair) -> Vector<Self>;
+    fn point(difference: &Difference, pair: VertexPair) -> RealVector<Self>;
 
     /// Converts a corner with rounded coordinates to this number type.
     fn convert_corner(difference: &Difference, corner: &Corner<f64>) -> Corner<Self> {
@@ -49,8 +49,8 @@ pub(super) trait Coordinate: Real {
 
 impl Coordinate for f64 {
     #[inline]
-    fn point(difference: &Difference, pair: VertexPair) -> Vector<Self> {
-        Vector(difference.point(pair).to_array())
+    fn point(difference: &Difference, pair: VertexPair) -> RealVector<Self> {
+        RealVector(difference.point(pair).to_array())
     }
 
     #[inline]
@@ -59,9 +59,9 @@ impl Coordinate for f64 {
     }
 }
 
-impl Coordinate for Twice {
-    fn point(difference: &Difference, pair: VertexPair) -> Vector<Self> {
-        difference.bodies.terms(pair).twice()
+impl Coordinate for DoubleWord {
+    fn point(difference: &Difference, pair: VertexPair) -> RealVector<Self> {
+        difference.bodies.terms(pair).double_word_point()
     }
 }
 
@@ -76,11 +76,11 @@ pub(super) fn descend_to_nearest<T: Coordinate>(
     goal: &Goal,
     found: &mut DescentResult,
 ) {
-    let noise = difference.noise.point();
+    let noise = difference.noise.point_error();
     let mut last: Option<T> = None;
     for _ in 0..MAX_STEPS {
         let mut nearest = simplex.reduce();
-        if simplex.is_full() && nearest.value().length() > noise {
+        if simplex.is_full() && nearest.to_dvec3().length() > noise {
             nearest = simplex.reduce_to_face();
         }
         let square = nearest.dot(&nearest);
@@ -88,7 +88,7 @@ pub(super) fn descend_to_nearest<T: Coordinate>(
             return;
         }
         last = Some(square);
-        let point = nearest.value();
+        let point = nearest.to_dvec3();
         found.record_point(point.length(), &simplex);
         if found.upper <= noise || simplex.is_full() {
             return;

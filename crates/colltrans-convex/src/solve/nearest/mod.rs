@@ -27,9 +27,9 @@ use crate::body::Inertia;
 use crate::setting::{TwoBodies, VertexPair};
 use colltrans_kernel::noise::Noise;
 use colltrans_kernel::plane::triangle_normal;
-use colltrans_kernel::real::{Real, Twice, Vector};
+use colltrans_kernel::real::{DoubleWord, Real, RealVector};
 use colltrans_kernel::symmetric::Symmetric;
-use colltrans_kernel::volume::{encloses, weights_of_origin};
+use colltrans_kernel::volume::{contains_origin, weights_of_origin};
 
 /// Maximum computed distance, in noises, of bodies that are near contact.
 const MAX_NEAR_CONTACT: f64 = 4.0;
@@ -55,7 +55,7 @@ impl<'a> Difference<'a> {
     /// Returns the point of `M` of a vertex pair.
     #[inline]
     fn point(&self, pair: VertexPair) -> DVec3 {
-        self.bodies.difference(pair)
+        self.bodies.difference_point(pair)
     }
 
     /// Returns the point of `M` that is lowest along `normal`. Starts the search at `near`, if given.
@@ -80,7 +80,7 @@ impl<'a> Difference<'a> {
             ),
             None => (bodies.moving.support(in_moving).0, bodies.fixed.support(in_fixed).0),
         };
-        VertexPair::of(moving, fixed)
+        VertexPair::from_indices(moving, fixed)
     }
 
     /// Returns the vertex pair that is lowest along `normal` (setting frame, any length).
@@ -92,7 +92,7 @@ impl<'a> Difference<'a> {
     /// Returns the point of `M` of a vertex pair, as a corner of a simplex.
     #[inline]
     fn corner_at(&self, pair: VertexPair) -> Corner<f64> {
-        Corner { at: Vector(self.point(pair).to_array()), pair }
+        Corner { at: RealVector(self.point(pair).to_array()), pair }
     }
 
     /// Returns the vector from the centre of the moving body to that of the fixed one.
@@ -104,7 +104,8 @@ impl<'a> Difference<'a> {
 
     /// Returns the vertex pair from which to start a search for the depth: the support pair along the line of centres.
     ///
-    /// The polytope that grows from this pair is wide. It would not be if the search started near the shortest way out.
+    /// The polytope that grows from this pair is wide. A start near the shortest separating translation would not
+    /// give a wide one.
     pub(crate) fn depth_start(&self) -> NearestPairs {
         let pair = self.support_point(direction_or_x(self.center_offset()), None).pair;
         NearestPairs { pairs: [pair; 3], count: 1 }
@@ -122,7 +123,7 @@ impl<'a> Difference<'a> {
             return direction_or_x(center);
         }
         let ellipsoid = |inertia: &Inertia, rotation: &DMat3| {
-            Symmetric::gram(&inertia.transposed_factor_product(&rotation.transpose()))
+            Symmetric::gram_matrix(&inertia.transposed_factor_product(&rotation.transpose()))
         };
         let [a, b] = [ellipsoid(p, &bodies.moving_matrix), ellipsoid(q, &bodies.fixed_matrix)];
         direction_or_x(ellipsoid_gap_normal(&a, &b, center, q.radius / p.radius))
@@ -145,14 +146,14 @@ fn direction_or_x(v: DVec3) -> DVec3 {
 fn ellipsoid_gap_normal(a: &Symmetric, b: &Symmetric, center: DVec3, mut r: f64) -> DVec3 {
     let (mut t, mut normal) = (0.0_f64, center);
     for _ in 0..MAX_GUESS_STEPS {
-        let k = a.combine(1.0 + r, b, 1.0 + 1.0 / r);
+        let k = a.linear_combination(1.0 + r, b, 1.0 + 1.0 / r);
         let (inverse, det) = k.plus_diagonal(t).adjugate();
-        let y = inverse.apply(center) * (1.0 / det);
-        let ky = k.apply(y);
+        let y = inverse.times_vector(center) * (1.0 / det);
+        let ky = k.times_vector(y);
         let square = y.dot(ky);
-        let slope = ky.dot(inverse.apply(y)) * (1.0 / det);
+        let slope = ky.dot(inverse.times_vector(y)) * (1.0 / det);
         let next = t + (square.sqrt() - 1.0) * square / slope;
-        let ratio = (b.square(y) / a.square(y)).sqrt();
+        let ratio = (b.quadratic_form(y) / a.quadratic_form(y)).sqrt();
         if !(next.is_finite() && ratio > 0.0 && ratio.is_finite()) {
             break;
         }
@@ -236,7 +237,7 @@ impl DescentResult {
     /// Stores the plane perpendicular to the unit vector `normal` at `lowest`, if its gap exceeds the stored one.
     #[inline]
     fn record_plane(&mut self, normal: DVec3, lowest: &Corner<f64>) {
-        let lower = normal.dot(lowest.at.value());
+        let lower = normal.dot(lowest.at.to_dvec3());
         if lower > self.lower || self.lowest.is_none() {
             self.lower = lower;
             self.normal = normal;
@@ -267,7 +268,7 @@ impl DescentResult {
 
     /// Returns the pairs from which a later descent may start.
     #[inline]
-    pub fn pairs(&self) -> NearestPairs {
+    pub fn start_pairs(&self) -> NearestPairs {
         let mut pairs = NearestPairs::default();
         for pair in self.weighted_pairs().take(3) {
             pairs.pairs[pairs.count] = pair;
@@ -292,7 +293,7 @@ pub(crate) fn nearest_points(
     start: &NearestPairs,
     length: Option<f64>,
 ) -> DescentResult {
-    let noise = difference.noise.point();
+    let noise = difference.noise.point_error();
     // The proven bounds are mostly weaker than the computed ones by these amounts.
     let thresholds = length.map(|length| [length + 3.0 * noise, length - 1.5 * noise]);
     search_until(difference, start, &Goal { max_gap: noise, thresholds, relative: None })
@@ -302,7 +303,7 @@ pub(crate) fn nearest_points(
 ///
 /// Ends as soon as the computed bounds differ by at most the fraction `share` of `lower - beyond`, or by one noise.
 #[inline]
-pub fn nearly(
+pub fn nearest_points_within_share(
     difference: &Difference,
     start: &NearestPairs,
     share: f64,
@@ -312,7 +313,7 @@ pub fn nearly(
     search_until(
         difference,
         start,
-        &Goal { max_gap: difference.noise.point(), thresholds: None, relative },
+        &Goal { max_gap: difference.noise.point_error(), thresholds: None, relative },
     )
 }
 
@@ -358,7 +359,7 @@ fn try_simplex_plane(difference: &Difference, found: &mut DescentResult) {
 /// `None` for other numbers of points, or if the normal has no length.
 fn simplex_normal(difference: &Difference, found: &DescentResult) -> Option<DVec3> {
     let bodies = difference.bodies;
-    let NearestPairs { pairs: [a, b, c], count } = found.pairs();
+    let NearestPairs { pairs: [a, b, c], count } = found.start_pairs();
     let normal = match count {
         2 => {
             let edge = bodies.displacement_between(a, b);
@@ -380,11 +381,11 @@ fn simplex_normal(difference: &Difference, found: &DescentResult) -> Option<DVec
 #[cold]
 #[inline(never)]
 fn descend_in_twice_precision(difference: &Difference, goal: &Goal, found: &mut DescentResult) {
-    let corner = |pair| Corner { at: difference.bodies.terms(pair).twice(), pair };
+    let corner = |pair| Corner { at: difference.bodies.terms(pair).double_word_point(), pair };
     if let Some(simplex) =
-        Simplex::<Twice>::from_corners(found.weighted_pairs().take(3).map(corner))
+        Simplex::<DoubleWord>::from_corners(found.weighted_pairs().take(3).map(corner))
     {
-        descend_to_nearest::<Twice>(difference, simplex, goal, found);
+        descend_to_nearest::<DoubleWord>(difference, simplex, goal, found);
     }
 }
 
@@ -402,9 +403,9 @@ pub struct GapPlane {
 impl DescentResult {
     /// Returns the best plane, with a proven gap. `None` if no plane was verified.
     #[inline]
-    pub fn plane(&self, difference: &Difference) -> Option<GapPlane> {
+    pub fn gap_plane(&self, difference: &Difference) -> Option<GapPlane> {
         let (normal, lowest, excess) = (self.normal, self.lowest?, self.excess?);
-        let gap = (self.lower - difference.noise.lowered() - excess).next_down();
+        let gap = (self.lower - difference.noise.lower_bound_margin() - excess).next_down();
         Some(GapPlane { gap: PlaneGap { normal, gap }, lowest, excess })
     }
 
@@ -412,9 +413,9 @@ impl DescentResult {
     /// computed nearly without rounding ([`Self::sharpest_plane`]).
     #[inline]
     pub(crate) fn separating_plane(&self, difference: &Difference) -> Option<GapPlane> {
-        let plane = self.plane(difference);
+        let plane = self.gap_plane(difference);
         let is_open = plane.is_none_or(|plane| plane.gap.gap <= 0.0);
-        let is_near = self.upper <= MAX_NEAR_CONTACT * difference.noise.point();
+        let is_near = self.upper <= MAX_NEAR_CONTACT * difference.noise.point_error();
         if is_open && is_near { self.sharpest_plane(difference).or(plane) } else { plane }
     }
 
@@ -444,7 +445,7 @@ impl DescentResult {
 
     /// Returns the nearest points as up to three vertex pairs and their weights. Unused weights are 0.
     #[inline]
-    pub fn points(&self) -> ([VertexPair; 3], [f64; 3]) {
+    pub fn weighted_pairs_and_weights(&self) -> ([VertexPair; 3], [f64; 3]) {
         let mut points = ([self.pairs[0]; 3], [0.0; 3]);
         let weighted = self.pairs.iter().zip(self.weights).filter(|(_, weight)| *weight > 0.0);
         for (k, (pair, weight)) in weighted.take(3).enumerate() {
@@ -464,10 +465,10 @@ impl DescentResult {
             }
         }
         let bodies = difference.bodies;
-        if self.full && encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale()) {
+        if self.full && contains_origin(&pairs.map(|pair| bodies.terms(pair)), bodies.size()) {
             return common_point(difference, pairs, weights);
         }
-        let is_near = self.upper <= MAX_NEAR_CONTACT * difference.noise.point();
+        let is_near = self.upper <= MAX_NEAR_CONTACT * difference.noise.point_error();
         let common = if is_near { self.points_around_origin(difference) } else { None };
         common.unwrap_or_else(|| {
             let distance = (self.upper + difference.noise.mean_length_margin()).next_up();
@@ -501,7 +502,7 @@ impl DescentResult {
             pairs
         });
         let pairs = completions
-            .find(|pairs| encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale()))?;
+            .find(|pairs| contains_origin(&pairs.map(|pair| bodies.terms(pair)), bodies.size()))?;
         Some(common_point(difference, pairs, weights))
     }
 }
@@ -516,7 +517,7 @@ fn common_point(
     mut weights: [f64; 4],
 ) -> NearPoints {
     let apart: DVec3 = pairs.iter().zip(weights).map(|(p, w)| difference.point(*p) * w).sum();
-    if apart.length() > difference.noise.point() {
+    if apart.length() > difference.noise.point_error() {
         let corners = pairs.map(|pair| difference.bodies.terms(pair));
         weights = weights_of_origin(&corners).unwrap_or(weights);
     }

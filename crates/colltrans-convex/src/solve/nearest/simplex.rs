@@ -7,13 +7,13 @@
 use glam::DVec3;
 
 use crate::setting::VertexPair;
-use colltrans_kernel::real::{Real, Vector};
+use colltrans_kernel::real::{Real, RealVector};
 
 /// Point of `M` with its vertex pair.
 #[derive(Debug, Clone, Copy)]
 pub struct Corner<T> {
     /// Coordinates of the point.
-    pub at: Vector<T>,
+    pub at: RealVector<T>,
     /// Vertices of the moving and of the fixed body.
     pub pair: VertexPair,
 }
@@ -21,7 +21,7 @@ pub struct Corner<T> {
 /// Simplex of up to four points of `M`, each with a weight.
 #[derive(Debug, Clone, Copy)]
 pub struct Simplex<T> {
-    at: [Vector<T>; 4],
+    at: [RealVector<T>; 4],
     pairs: [VertexPair; 4],
     /// Weights of the nearest point; 0 beyond `count`.
     weights: [T; 4],
@@ -33,7 +33,7 @@ impl<T: Real> Simplex<T> {
     #[inline]
     pub fn new(corner: Corner<T>) -> Self {
         let mut weights = [T::ZERO; 4];
-        weights[0] = T::of(1.0);
+        weights[0] = T::from_f64(1.0);
         Self { at: [corner.at; 4], pairs: [corner.pair; 4], weights, count: 1 }
     }
 
@@ -70,15 +70,15 @@ impl<T: Real> Simplex<T> {
     /// Returns four pairs and their weights. Pairs with weight 0 are not used.
     #[inline]
     pub(super) fn pairs_and_weights(&self) -> ([VertexPair; 4], [f64; 4]) {
-        (self.pairs, self.weights.map(T::value))
+        (self.pairs, self.weights.map(T::to_f64))
     }
 
     /// Computes the nearest point, and removes the corners that it does not need.
     #[inline]
-    pub fn reduce(&mut self) -> Vector<T> {
+    pub fn reduce(&mut self) -> RealVector<T> {
         let [a, b, c, d] = &self.at;
         self.weights = match self.count {
-            1 => [T::of(1.0), T::ZERO, T::ZERO, T::ZERO],
+            1 => [T::from_f64(1.0), T::ZERO, T::ZERO, T::ZERO],
             2 => segment_weights(a, b),
             3 => triangle_weights(a, b, c),
             _ => tetrahedron_weights([a, b, c, d]),
@@ -89,15 +89,15 @@ impl<T: Real> Simplex<T> {
     /// Computes the nearest point of the faces of a tetrahedron, and removes the other corners. Used for a tetrahedron
     /// so flat that rounded volumes do not locate the origin.
     #[cold]
-    pub(super) fn reduce_to_face(&mut self) -> Vector<T> {
+    pub(super) fn reduce_to_face(&mut self) -> RealVector<T> {
         self.weights = nearest_face_weights(self.at.each_ref());
         self.drop_unweighted()
     }
 
     /// Removes corners with weight 0, and returns the weighted mean of the others.
     #[inline]
-    fn drop_unweighted(&mut self) -> Vector<T> {
-        let mut nearest = Vector::ZERO;
+    fn drop_unweighted(&mut self) -> RealVector<T> {
+        let mut nearest = RealVector::ZERO;
         let mut kept = 0;
         for k in 0..self.count {
             let weight = self.weights[k];
@@ -116,27 +116,27 @@ impl<T: Real> Simplex<T> {
 
     /// Returns the direction from the origin perpendicular to the simplex (any length), given its nearest point.
     #[inline]
-    pub fn normal(&self, nearest: &Vector<T>) -> DVec3 {
+    pub fn normal(&self, nearest: &RealVector<T>) -> DVec3 {
         let [a, b, c, _] = &self.at;
         match self.count {
             2 => {
                 let edge = b.minus(a);
                 let along = nearest.dot(&edge) / edge.dot(&edge);
-                nearest.minus(&edge.times(along)).value()
+                nearest.minus(&edge.times(along)).to_dvec3()
             }
             3 => {
-                let normal = b.minus(a).cross(&c.minus(a)).value();
-                if normal.dot(nearest.value()) < 0.0 { -normal } else { normal }
+                let normal = b.minus(a).cross(&c.minus(a)).to_dvec3();
+                if normal.dot(nearest.to_dvec3()) < 0.0 { -normal } else { normal }
             }
-            _ => nearest.value(),
+            _ => nearest.to_dvec3(),
         }
     }
 }
 
 /// Returns the weights of the point of a segment nearest to the origin.
 #[inline]
-fn segment_weights<T: Real>(a: &Vector<T>, b: &Vector<T>) -> [T; 4] {
-    let one = T::of(1.0);
+fn segment_weights<T: Real>(a: &RealVector<T>, b: &RealVector<T>) -> [T; 4] {
+    let one = T::from_f64(1.0);
     let edge = b.minus(a);
     let (along, square) = (-a.dot(&edge), edge.dot(&edge));
     if along >= square {
@@ -153,8 +153,8 @@ fn segment_weights<T: Real>(a: &Vector<T>, b: &Vector<T>) -> [T; 4] {
 /// Returns the weights of the point of a triangle nearest to the origin (Ericson, "Real-Time Collision Detection",
 /// section 5.1.5).
 #[inline]
-fn triangle_weights<T: Real>(a: &Vector<T>, b: &Vector<T>, c: &Vector<T>) -> [T; 4] {
-    let (zero, one) = (T::ZERO, T::of(1.0));
+fn triangle_weights<T: Real>(a: &RealVector<T>, b: &RealVector<T>, c: &RealVector<T>) -> [T; 4] {
+    let (zero, one) = (T::ZERO, T::from_f64(1.0));
     let (ab, ac) = (b.minus(a), c.minus(a));
     let (ab_a, ac_a) = (-ab.dot(a), -ac.dot(a));
     if ab_a <= zero && ac_a <= zero {
@@ -193,9 +193,9 @@ fn triangle_weights<T: Real>(a: &Vector<T>, b: &Vector<T>, c: &Vector<T>) -> [T;
 /// Returns the weights of the point of a tetrahedron nearest to the origin. This is the origin itself if it is on the
 /// inner side of all faces.
 #[inline]
-fn tetrahedron_weights<T: Real>(corners: [&Vector<T>; 4]) -> [T; 4] {
+fn tetrahedron_weights<T: Real>(corners: [&RealVector<T>; 4]) -> [T; 4] {
     let [a, b, c, d] = corners;
-    let volume = |x: &Vector<T>, y: &Vector<T>, z: &Vector<T>| x.dot(&y.cross(z));
+    let volume = |x: &RealVector<T>, y: &RealVector<T>, z: &RealVector<T>| x.dot(&y.cross(z));
     let volumes = [volume(b, c, d), -volume(a, c, d), volume(a, b, d), -volume(a, b, c)];
     let inside = volumes.iter().all(|x| *x > T::ZERO) || volumes.iter().all(|x| *x < T::ZERO);
     if inside {
@@ -206,7 +206,7 @@ fn tetrahedron_weights<T: Real>(corners: [&Vector<T>; 4]) -> [T; 4] {
 }
 
 /// Returns the weights of the point of the faces of a tetrahedron nearest to the origin.
-fn nearest_face_weights<T: Real>(corners: [&Vector<T>; 4]) -> [T; 4] {
+fn nearest_face_weights<T: Real>(corners: [&RealVector<T>; 4]) -> [T; 4] {
     let mut best = ([T::ZERO; 4], None);
     for left_out in 0..4 {
         let [i, j, k] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]][left_out];

@@ -17,7 +17,7 @@ use colltrans_kernel::volume;
 
 /// Checks whether a surface is closed and winds around the origin, provided that no triangle contains the origin.
 pub(crate) fn surrounds_origin(bodies: &TwoBodies, surface: &Enclosure) -> bool {
-    let points: Vec<_> = surface.pairs.iter().map(|pair| bodies.difference(*pair)).collect();
+    let points: Vec<_> = surface.pairs.iter().map(|pair| bodies.difference_point(*pair)).collect();
     is_closed(&surface.triangles) && winds_around_origin(bodies, &points, surface)
 }
 
@@ -27,13 +27,13 @@ pub(super) fn winds_around_origin(
     points: &[DVec3],
     surface: &Enclosure,
 ) -> bool {
-    let size = bodies.scale();
+    let size = bodies.size();
     let mut has_volume = false;
     for corners in &surface.triangles {
         let rounded = volume::rounded_origin_side(corners.map(|k| points[k as usize]), size);
         let sign = rounded.unwrap_or_else(|| {
             let [a, b, c] = corners.map(|k| bodies.terms(surface.pairs[k as usize]));
-            volume::sign([&a, &b, &c], size)
+            volume::origin_side([&a, &b, &c], size)
         });
         match sign {
             Ordering::Less => return false,

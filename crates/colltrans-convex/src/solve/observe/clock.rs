@@ -64,11 +64,11 @@ impl Default for Clock {
 }
 
 impl Observer for Clock {
-    fn begun(&mut self, _: impl FnOnce() -> ShadowFrame) {
+    fn search_started(&mut self, _: impl FnOnce() -> ShadowFrame) {
         self.last = Some(Instant::now());
     }
 
-    fn ended(&mut self, phase: Phase) {
+    fn phase_ended(&mut self, phase: Phase) {
         if let Some(last) = self.last {
             let (sum, count) = &mut self.spent[phase as usize];
             *sum += last.elapsed().as_nanos() as f64;
@@ -80,12 +80,12 @@ impl Observer for Clock {
 
 impl Profile {
     /// Returns the name and the time in nanoseconds of each phase, in the order of [`Phase`].
-    pub fn phases(&self) -> [(&'static str, f64); PHASE_NAMES.len()] {
+    pub fn phase_times(&self) -> [(&'static str, f64); PHASE_NAMES.len()] {
         std::array::from_fn(|i| (PHASE_NAMES[i], self.nanoseconds[i]))
     }
 
     /// Returns the time of all phases in nanoseconds.
-    pub fn total(&self) -> f64 {
+    pub fn total_nanoseconds(&self) -> f64 {
         self.nanoseconds.iter().sum()
     }
 }

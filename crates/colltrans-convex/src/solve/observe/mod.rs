@@ -10,7 +10,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::answer::Steps;
 use crate::setting::VertexPair;
-use crate::setting::minkowski::Point;
+use crate::setting::minkowski::ShadowPoint;
 pub use clock::{Clock, Profile};
 pub use recording::{Event, Recording};
 
@@ -56,8 +56,8 @@ pub struct Support {
 impl Support {
     /// Builds the report of a point that was found along `normal` (shadow frame).
     #[inline]
-    pub(crate) fn from_point(normal: DVec3, point: &Point) -> Self {
-        Self { normal, at: point.at, pair: point.pair }
+    pub(crate) fn from_point(normal: DVec3, point: &ShadowPoint) -> Self {
+        Self { normal, at: point.coordinates, pair: point.pair }
     }
 }
 
@@ -83,7 +83,7 @@ pub struct PlanarProblem {
     /// hides a section.
     pub value: f64,
     /// Features at which the sections meet.
-    pub touch: Touch,
+    pub touch: SectionContact,
     /// Gradient of the value with respect to the two levels.
     pub gradient: DVec2,
     /// Levels that the cell shift reaches, in the cell in which the same features stay in contact. Equal to `levels` if
@@ -93,12 +93,13 @@ pub struct PlanarProblem {
     pub shifted: f64,
 }
 
-/// Features at which two sections meet. They are the same in a whole cell of the mark (the paper, section II-B).
+/// Features at which two sections meet. They are the same in a whole cell of the plane of levels (the paper, section
+/// II-B, calls the set of these cells the mark).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Touch {
-    /// An edge of one section touches an edge of the other; these are a face of each body.
+pub enum SectionContact {
+    /// An edge of one section touches an edge of the other. Each edge lies on a face of its body.
     Edges,
-    /// A corner of one section, which is an edge of a body, touches the other section.
+    /// A corner of one section, which lies on an edge of its body, touches the other section.
     Vertex,
     /// The sections never meet: a line parallel to the projected direction separates them.
     Separated,
@@ -106,9 +107,9 @@ pub enum Touch {
     Hidden,
 }
 
-impl Touch {
+impl SectionContact {
     /// Checks whether the sections meet.
-    pub fn meets(self) -> bool {
+    pub fn intersects(self) -> bool {
         matches!(self, Self::Edges | Self::Vertex)
     }
 }
@@ -119,7 +120,7 @@ impl PlanarProblem {
         Self {
             levels,
             value: f64::NAN,
-            touch: Touch::Hidden,
+            touch: SectionContact::Hidden,
             gradient: DVec2::ZERO,
             best: levels,
             shifted: f64::NAN,
@@ -147,8 +148,8 @@ pub struct Cut {
 /// By default each method does nothing, and its argument is never computed. [`Clock`] times the phases, [`Recording`]
 /// records the events, and [`Steps`] counts. A pair of observers is an observer.
 pub trait Observer {
-    /// Reports that a search begins, or begins again in a frame rotated about the direction.
-    fn begun(&mut self, frame: impl FnOnce() -> ShadowFrame) {
+    /// Reports that a search begins, or begins again from scratch, possibly in a frame rotated about the direction.
+    fn search_started(&mut self, frame: impl FnOnce() -> ShadowFrame) {
         let _ = frame;
     }
 
@@ -190,7 +191,7 @@ pub trait Observer {
     }
 
     /// Reports that a phase ended. The work since the previous report of this kind belongs to the phase.
-    fn ended(&mut self, phase: Phase) {
+    fn phase_ended(&mut self, phase: Phase) {
         let _ = phase;
     }
 }
@@ -219,10 +220,10 @@ impl Observer for Steps {
 }
 
 impl<A: Observer, B: Observer> Observer for (A, B) {
-    fn begun(&mut self, frame: impl FnOnce() -> ShadowFrame) {
+    fn search_started(&mut self, frame: impl FnOnce() -> ShadowFrame) {
         let frame = frame();
-        self.0.begun(|| frame);
-        self.1.begun(|| frame);
+        self.0.search_started(|| frame);
+        self.1.search_started(|| frame);
     }
 
     fn support(&mut self, support: impl FnOnce() -> Support) {
@@ -267,9 +268,9 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.1.cut(|| cut);
     }
 
-    fn ended(&mut self, phase: Phase) {
-        self.0.ended(phase);
-        self.1.ended(phase);
+    fn phase_ended(&mut self, phase: Phase) {
+        self.0.phase_ended(phase);
+        self.1.phase_ended(phase);
     }
 }
 
@@ -291,8 +292,8 @@ impl<'o, O: Observer> Watch<'o, O> {
 
 impl<O: Observer> Observer for Watch<'_, O> {
     #[inline]
-    fn begun(&mut self, frame: impl FnOnce() -> ShadowFrame) {
-        self.observer.begun(frame);
+    fn search_started(&mut self, frame: impl FnOnce() -> ShadowFrame) {
+        self.observer.search_started(frame);
     }
 
     #[inline]
@@ -334,7 +335,7 @@ impl<O: Observer> Observer for Watch<'_, O> {
     }
 
     #[inline]
-    fn ended(&mut self, phase: Phase) {
-        self.observer.ended(phase);
+    fn phase_ended(&mut self, phase: Phase) {
+        self.observer.phase_ended(phase);
     }
 }

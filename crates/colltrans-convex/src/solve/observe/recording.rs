@@ -9,7 +9,7 @@ use super::{Cut, Observer, Phase, PlanarProblem, Sections, ShadowFrame, Support}
 #[non_exhaustive]
 pub enum Event {
     /// A search began.
-    Begun(ShadowFrame),
+    SearchStarted(ShadowFrame),
     /// A support point was computed.
     Support(Support),
     /// A portal was reached. Contains its corners in the shadow frame.
@@ -25,7 +25,7 @@ pub enum Event {
     /// The region of levels was cut.
     Cut(Cut),
     /// A phase ended.
-    Ended(Phase),
+    PhaseEnded(Phase),
 }
 
 /// An [`Observer`] that records all events in their order.
@@ -61,8 +61,8 @@ impl Recording {
 }
 
 impl Observer for Recording {
-    fn begun(&mut self, frame: impl FnOnce() -> ShadowFrame) {
-        self.events.push(Event::Begun(frame()));
+    fn search_started(&mut self, frame: impl FnOnce() -> ShadowFrame) {
+        self.events.push(Event::SearchStarted(frame()));
     }
 
     fn support(&mut self, support: impl FnOnce() -> Support) {
@@ -93,7 +93,7 @@ impl Observer for Recording {
         self.events.push(Event::Cut(cut()));
     }
 
-    fn ended(&mut self, phase: Phase) {
-        self.events.push(Event::Ended(phase));
+    fn phase_ended(&mut self, phase: Phase) {
+        self.events.push(Event::PhaseEnded(phase));
     }
 }

@@ -14,7 +14,7 @@ use super::refine::portal_normal;
 use super::{Context, LinePosition, Portal, PortalStatus};
 use crate::body::ConvexPolyhedron;
 use crate::setting::VertexPair;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 use crate::solve::observe::Observer;
 
 /// Result of crossing a face.
@@ -22,7 +22,7 @@ pub(super) enum CoplanarStep {
     /// The line pierces this portal in the face.
     Portal(Portal, PortalStatus),
     /// The line is beyond the face: its normal (shadow frame), and its farthest corner on that side.
-    Corner(DVec3, Point),
+    Corner(DVec3, ShadowPoint),
     /// The triangle has no coplanar neighbour, or the walk did not reach the line.
     NotCoplanar,
 }
@@ -57,14 +57,14 @@ pub(super) fn cross_face<O: Observer>(
     };
     let mut face = None;
     for _ in 0..MAX_STEPS {
-        context.watch.portal(|| portal.map(|p| p.at));
+        context.watch.portal(|| portal.map(|p| p.coordinates));
         let edge = Edge::from_corner(&portal, from);
         let outward = edge.outward();
         let (p, q) = *face
             .get_or_insert_with(|| features_in_plane(&context.difference, edge.from.pair, normal));
         let far = farthest_point(&context.difference, (p, q), outward.extend(0.0));
         let beyond = outward.dot(far.shadow() - edge.from.shadow());
-        if beyond <= context.difference.touching() * outward.length() {
+        if beyond <= context.difference.touching_distance() * outward.length() {
             return CoplanarStep::NotCoplanar;
         }
         if outward.dot(far.shadow()) <= 0.0 {
@@ -93,12 +93,12 @@ fn features_in_plane(
     pair: VertexPair,
     normal: DVec3,
 ) -> (Feature, Feature) {
-    let [moving, fixed] = pair.numbers();
+    let [moving, fixed] = pair.indices();
     let setting = difference.setting;
     // Distances along `normal` are scaled by its length.
-    let near = difference.touching() * normal.length();
-    let p = feature_in_plane(setting.moving, moving, difference.in_moving(normal), near);
-    let q = feature_in_plane(setting.fixed, fixed, difference.in_fixed(normal), near);
+    let near = difference.touching_distance() * normal.length();
+    let p = feature_in_plane(setting.moving, moving, difference.to_moving_frame(normal), near);
+    let q = feature_in_plane(setting.fixed, fixed, difference.to_fixed_frame(normal), near);
     (p, q)
 }
 
@@ -107,7 +107,7 @@ fn feature_in_plane(body: &ConvexPolyhedron, vertex: u32, normal: DVec3, near: f
     let here = body.vertices()[vertex as usize];
     let is_in = |w: u32| normal.dot(body.vertices()[w as usize] - here).abs() <= near;
     let neighbours = body.neighbours(vertex);
-    let outgoing = body.topology().outgoing(vertex);
+    let outgoing = body.topology().outgoing_half_edges(vertex);
     let mut found = Feature::Vertex(vertex);
     for (k, &w) in neighbours.iter().enumerate() {
         if !is_in(w) {
@@ -128,11 +128,11 @@ fn farthest_point(
     difference: &MinkowskiDifference,
     (p, q): (Feature, Feature),
     outward: DVec3,
-) -> Point {
+) -> ShadowPoint {
     let setting = difference.setting;
-    let moving = farthest_vertex(setting.moving, p, -difference.in_moving(outward));
-    let fixed = farthest_vertex(setting.fixed, q, difference.in_fixed(outward));
-    difference.vertex(VertexPair::of(moving, fixed))
+    let moving = farthest_vertex(setting.moving, p, -difference.to_moving_frame(outward));
+    let fixed = farthest_vertex(setting.fixed, q, difference.to_fixed_frame(outward));
+    difference.vertex_point(VertexPair::from_indices(moving, fixed))
 }
 
 /// Returns the vertex of a feature that is farthest along `direction` (body frame).

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::gift_wrap::RotatingPlane;
 use super::ties::line_position_with_ties;
 use super::{Context, LinePosition, Portal, PortalStatus};
-use crate::setting::minkowski::Point;
+use crate::setting::minkowski::ShadowPoint;
 use crate::solve::observe::Observer;
 use colltrans_kernel::plane::triangle_normal;
 
@@ -14,9 +14,9 @@ const NEXT_CORNER: [usize; 3] = [1, 2, 0];
 
 /// Directed edge of a portal. The third corner is on its left, the line on its right.
 pub(super) struct Edge {
-    pub(super) from: Point,
-    pub(super) to: Point,
-    pub(super) third: Point,
+    pub(super) from: ShadowPoint,
+    pub(super) to: ShadowPoint,
+    pub(super) third: ShadowPoint,
 }
 
 /// Locates the line relative to a portal. Decides ties if rounded determinants cannot.
@@ -78,7 +78,8 @@ impl Edge {
     /// or inverted.
     #[inline]
     pub(super) fn rotating_plane(&self) -> Option<RotatingPlane> {
-        let normal = triangle_normal([self.from.at, self.to.at, self.third.at]);
+        let normal =
+            triangle_normal([self.from.coordinates, self.to.coordinates, self.third.coordinates]);
         (normal.z > 0.0).then_some(RotatingPlane { normal, outward: self.outward() })
     }
 }

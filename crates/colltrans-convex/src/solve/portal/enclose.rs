@@ -14,7 +14,7 @@ use glam::{DMat2, DVec2, DVec3};
 use super::normal_guess::{slope_per_shadow, steepest_slope};
 use super::{Context, NormalGuess, Plane, Portal, PortalStatus, normal_of};
 use crate::setting::VertexPair;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 use crate::solve::observe::{Observer, Support};
 use colltrans_kernel::determinant::accurate_det;
 
@@ -39,7 +39,7 @@ pub(crate) struct SeparatingLine {
     /// Smallest `normal . s`, the signed distance from the line `t d`.
     pub(crate) margin: f64,
     /// Support point that attains the margin.
-    pub(crate) point: Point,
+    pub(crate) point: ShadowPoint,
     /// Other end of an edge of the silhouette that the line may touch, if one is known. Otherwise the
     /// pair of `point`.
     pub(crate) end: VertexPair,
@@ -49,7 +49,7 @@ pub(crate) struct SeparatingLine {
 /// slope is an estimate.
 #[derive(Debug, Clone, Copy)]
 struct Tangent {
-    point: Point,
+    point: ShadowPoint,
     slope: DVec2,
 }
 
@@ -165,7 +165,7 @@ impl<O: Observer> PortalSearch<'_, '_, '_, O> {
     ) -> Result<Tangent, SeparatingLine> {
         let outward = separating_candidate(known, near_side);
         // A point nearer to the line than this may be on either side of it.
-        let least_margin = -self.context.difference.touching();
+        let least_margin = -self.context.difference.touching_distance();
         let least_scaled = least_margin * outward.length();
         let near = known[known.len() - 1].point.pair;
         for factor in STEP_FACTORS {
@@ -180,7 +180,7 @@ impl<O: Observer> PortalSearch<'_, '_, '_, O> {
             }
         }
         let outward = outward.normalize();
-        let point = self.context.difference.support(outward.extend(0.0));
+        let point = self.context.difference.support_point(outward.extend(0.0));
         self.context.watch.support(|| Support::from_point(outward.extend(0.0), &point));
         let margin = outward.dot(point.shadow());
         if margin < least_margin {
@@ -196,8 +196,10 @@ impl<O: Observer> PortalSearch<'_, '_, '_, O> {
     }
 }
 
-/// Returns the vector from the line towards the known points, the candidate for a separating normal.
-/// It is long enough to be normalised.
+/// Returns the candidate for a separating normal, long enough to be normalised.
+///
+/// For two known points it is perpendicular to their edge and points from the line to the edge. If there is only one
+/// point, or the edge is too short, it is `near_side`, or `X` if `near_side` is too short as well.
 fn separating_candidate(known: &[Tangent], near_side: DVec2) -> DVec2 {
     if let [from, to] = known {
         // The line is on the left of the edge; therefore the edge is on the right of the line.
@@ -241,8 +243,9 @@ pub(crate) fn widest_margin<O: Observer>(
     found: SeparatingLine,
 ) -> SeparatingLine {
     let mut best = verified_line(&context.difference, found.normal, found.point);
-    let mut segment = [best.point, context.difference.point(found.end, found.normal.extend(0.0))];
-    if is_widest_segment(&segment, &best, context.difference.noise.point()) {
+    let mut segment =
+        [best.point, context.difference.widened_point(found.end, found.normal.extend(0.0))];
+    if is_widest_segment(&segment, &best, context.difference.noise.point_error()) {
         return best;
     }
     let (mut nearest, mut stalls) = (f64::INFINITY, 0);
@@ -260,9 +263,9 @@ pub(crate) fn widest_margin<O: Observer>(
         let away = options.map(|s| normal_and_distance(&s).map_or(0.0, |(_, distance)| distance));
         let nearer = usize::from(away[1] < away[0]);
         // A segment at the same distance, up to rounding, may still have a better normal.
-        let closer = nearest - away[nearer] > PROGRESS * context.difference.noise.point();
+        let closer = nearest - away[nearer] > PROGRESS * context.difference.noise.point_error();
         (nearest, stalls) = if closer { (away[nearer], 0) } else { (nearest, stalls + 1) };
-        if distance - margin <= context.difference.noise.point() || stalls > MAX_STALLS {
+        if distance - margin <= context.difference.noise.point_error() || stalls > MAX_STALLS {
             break;
         }
         segment = options[nearer];
@@ -272,7 +275,7 @@ pub(crate) fn widest_margin<O: Observer>(
 
 /// Checks that a segment lies in the separating line, up to rounding, and that the line `t d` passes
 /// it between its ends at a distance of no more than `|margin|`. Then no normal has a larger margin.
-fn is_widest_segment(segment: &[Point; 2], found: &SeparatingLine, rounding: f64) -> bool {
+fn is_widest_segment(segment: &[ShadowPoint; 2], found: &SeparatingLine, rounding: f64) -> bool {
     let [a, b] = segment.map(|p| p.shadow());
     let along = b - a;
     let is_between = a.dot(along) < 0.0 && b.dot(along) > 0.0;
@@ -288,7 +291,7 @@ fn is_widest_segment(segment: &[Point; 2], found: &SeparatingLine, rounding: f64
 fn verified_line(
     difference: &MinkowskiDifference,
     normal: DVec2,
-    climbed: Point,
+    climbed: ShadowPoint,
 ) -> SeparatingLine {
     let point = Plane::verified_support_point(difference, normal.extend(0.0), climbed);
     SeparatingLine { normal, margin: normal.dot(point.shadow()), point, end: point.pair }
@@ -298,7 +301,7 @@ fn verified_line(
 /// the line touches the segment.
 ///
 /// There is no cancellation, not even if the line is close to a long segment.
-fn normal_and_distance(segment: &[Point; 2]) -> Option<(DVec2, f64)> {
+fn normal_and_distance(segment: &[ShadowPoint; 2]) -> Option<(DVec2, f64)> {
     let [a, b] = segment.map(|p| p.shadow());
     let along = b - a;
     if a.dot(along) < 0.0 && b.dot(along) > 0.0 {
@@ -317,7 +320,7 @@ pub(crate) fn pierced_triangle(
     difference: &MinkowskiDifference,
     corners: &[VertexPair; 4],
 ) -> Option<Portal> {
-    let [a, b, c, d] = corners.map(|pair| difference.vertex(pair));
+    let [a, b, c, d] = corners.map(|pair| difference.vertex_point(pair));
     let halves = if corners[2] == corners[3] { 1 } else { 2 };
     [[a, b, c], [a, c, d]].into_iter().take(halves).find_map(|[a, b, c]| {
         match [(&a, &b), (&b, &c), (&c, &a)].map(|(from, to)| difference.is_left(from, to)) {

@@ -72,8 +72,11 @@ pub(crate) fn walk_from_last<O: Observer>(
     last: &ContactPortal,
 ) -> WalkResult {
     let [a, b, c] = last.pairs;
-    let mut portal =
-        [context.difference.vertex(a), context.difference.vertex(b), context.difference.vertex(c)];
+    let mut portal = [
+        context.difference.vertex_point(a),
+        context.difference.vertex_point(b),
+        context.difference.vertex_point(c),
+    ];
     let [a, b, c] = portal.map(|p| p.shadow());
     if (b - a).perp_dot(c - a) < 0.0 {
         portal.swap(0, 1);
@@ -109,7 +112,9 @@ pub(crate) fn walk_from_last<O: Observer>(
 #[inline(never)]
 fn walk_to_line<O: Observer>(context: &mut Context<O>, mut edge: Edge, most: usize) -> WalkResult {
     for _ in 0..most {
-        context.watch.portal(|| [edge.from.at, edge.to.at, edge.third.at]);
+        context
+            .watch
+            .portal(|| [edge.from.coordinates, edge.to.coordinates, edge.third.coordinates]);
         let Some(plane) = edge.rotating_plane() else { return WalkResult::Lost };
         // The line is on the left of the crossed edge, taken in reverse.
         let Some(point) = first_vertex_met(&context.difference, &edge.from, &plane) else {
@@ -129,8 +134,9 @@ fn walk_to_line<O: Observer>(context: &mut Context<O>, mut edge: Edge, most: usi
 pub(crate) struct WalkLimits {
     /// Maximum number of corrections of the guess by the curvature of the ellipsoids.
     corrections: usize,
-    /// Maximum distance of the line, in widths of the last triangle that is so near, at which a walk
-    /// begins if corrections come no nearer. From farther away, enclosing the line is faster.
+    /// Maximum distance of the line beyond an edge, in widths of the triangle, at which a walk may begin at this
+    /// edge. It begins at the last such edge found, before or after a correction. From farther away, enclosing the line
+    /// is faster.
     widths: f64,
     /// Maximum number of faces of `M` crossed. Beyond that, enclosing the line is faster.
     crossings: usize,
@@ -168,7 +174,7 @@ pub(crate) fn walk_from_guess<O: Observer>(
     for corrections in 0.. {
         let shadow = vertex.shadow();
         let mut toward_line = -shadow;
-        let touching = context.difference.touching();
+        let touching = context.difference.touching_distance();
         if is_support && shadow.length_squared() <= touching * touching {
             match classify_vertex(context, &vertex, slope) {
                 VertexCase::Lowest(portal, status) => return reached(portal, status),

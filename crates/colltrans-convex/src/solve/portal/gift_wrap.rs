@@ -11,9 +11,9 @@ use std::hint::select_unpredictable;
 
 use glam::{DVec2, DVec3};
 
-use crate::body::{ConvexPolyhedron, FAN, cyclic_maximum};
+use crate::body::{ConvexPolyhedron, MAX_SCANNED_NEIGHBOURS, cyclic_maximum};
 use crate::setting::VertexPair;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 
 /// Plane that rotates downwards on one side of an axis.
 pub(super) struct RotatingPlane {
@@ -28,22 +28,25 @@ pub(super) struct RotatingPlane {
 #[inline]
 pub(super) fn first_vertex_met(
     difference: &MinkowskiDifference,
-    vertex: &Point,
+    vertex: &ShadowPoint,
     plane: &RotatingPlane,
-) -> Option<Point> {
-    let [moving, fixed] = vertex.pair.numbers();
+) -> Option<ShadowPoint> {
+    let [moving, fixed] = vertex.pair.indices();
     let setting = difference.setting;
     let (normal, outward) = (plane.normal, plane.outward.extend(0.0));
     // A neighbour nearer to the axis than this is not beyond it.
-    let least = difference.touching() * plane.outward.length();
+    let least = difference.touching_distance() * plane.outward.length();
     let rotation = BodyRotation {
-        up: -difference.in_moving(normal),
-        out: -difference.in_moving(outward),
+        up: -difference.to_moving_frame(normal),
+        out: -difference.to_moving_frame(outward),
         least,
     };
     let p = rotation.first_neighbour(setting.moving, moving);
-    let rotation =
-        BodyRotation { up: difference.in_fixed(normal), out: difference.in_fixed(outward), least };
+    let rotation = BodyRotation {
+        up: difference.to_fixed_frame(normal),
+        out: difference.to_fixed_frame(outward),
+        least,
+    };
     let q = rotation.first_neighbour(setting.fixed, fixed);
     let of_fixed = q.rise * p.run < p.rise * q.run;
     let found = if of_fixed { q.vertex } else { p.vertex };
@@ -52,7 +55,7 @@ pub(super) fn first_vertex_met(
     }
     let moving = select_unpredictable(of_fixed, moving, found);
     let fixed = select_unpredictable(of_fixed, found, fixed);
-    Some(difference.vertex(VertexPair::of(moving, fixed)))
+    Some(difference.vertex_point(VertexPair::from_indices(moving, fixed)))
 }
 
 /// Rotation of a plane in the frame of one body. `up` measures the rise of an edge and `out` its run.
@@ -80,7 +83,7 @@ impl BodyRotation {
     fn first_neighbour(&self, body: &ConvexPolyhedron, vertex: u32) -> FirstNeighbour {
         let here = body.vertices()[vertex as usize];
         let neighbours = body.neighbours(vertex);
-        if neighbours.len() > FAN {
+        if neighbours.len() > MAX_SCANNED_NEIGHBOURS {
             return self.first_of_fan(body, vertex, neighbours);
         }
         let mut first = FirstNeighbour { vertex: NO_VERTEX, rise: f64::INFINITY, run: 1.0 };

@@ -28,7 +28,7 @@ mod ties;
 use glam::{DVec2, DVec3};
 
 use crate::setting::VertexPair;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 use crate::solve::observe::{Observer, Support, Watch};
 pub(crate) use enclose::{
     Enclosure, SeparatingLine, enclose, pierced_triangle, upward_guess, widest_margin,
@@ -44,7 +44,7 @@ pub(crate) use plane::{Face, Plane};
 pub(crate) use refine::{MAX_PORTALS, Refined, refine, supported_face};
 
 /// Three points of `M` whose shadows contain the line, counter-clockwise.
-pub(crate) type Portal = [Point; 3];
+pub(crate) type Portal = [ShadowPoint; 3];
 
 /// State that all stages of one cast share.
 pub(crate) struct Context<'a, 'o, O> {
@@ -56,10 +56,10 @@ impl<O: Observer> Context<'_, '_, O> {
     /// Returns the support point along `normal`. Starts the search at `near`, if a nearby pair is known.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction in memory stalls the scan")]
-    fn support(&mut self, normal: DVec3, near: Option<VertexPair>) -> Point {
+    fn support(&mut self, normal: DVec3, near: Option<VertexPair>) -> ShadowPoint {
         let point = match near {
             Some(near) => self.difference.support_point_from(normal, near),
-            None => self.difference.support(normal),
+            None => self.difference.support_point(normal),
         };
         self.watch.support(|| Support::from_point(normal, &point));
         point

@@ -77,7 +77,7 @@ impl NormalGuess {
         let setting = difference.setting;
         let radius =
             (setting.moving.inertia().radius + setting.fixed.inertia().radius) * MEAN_RADIUS;
-        let lateral = difference.center().truncate();
+        let lateral = difference.center_difference().truncate();
         let square = radius * radius - lateral.length_squared();
         let normal = if square > 0.0 {
             with_limited_slope(lateral.extend(square.sqrt()))
@@ -92,7 +92,7 @@ impl NormalGuess {
     /// Returns the guess from the inertia ellipsoids.
     #[inline]
     pub(crate) fn from_ellipsoids(difference: &MinkowskiDifference) -> Self {
-        let (center, [a, b]) = difference.ellipsoids();
+        let (center, [a, b]) = difference.inertia_ellipsoids();
         let mut normal = fitted_entry_normal(difference.setting, center, [&a, &b]);
         if normal.z > 0.0 {
             let ((p, hessian_p), (q, hessian_q)) =
@@ -118,14 +118,14 @@ fn fitted_entry_normal(setting: &Setting, center: DVec3, [a, b]: [&Symmetric; 2]
     let (moving, fixed) = (setting.moving.inertia(), setting.fixed.inertia());
     let fine = setting.moving.vertices().len().max(setting.fixed.vertices().len()) > MANY_VERTICES;
     let fitted = if fine { FINELY_FITTED } else { FITTED };
-    let mut enough = if fine && !(moving.round && fixed.round) { fitted } else { FIRST_FIT };
+    let mut enough = if fine && !(moving.is_round && fixed.is_round) { fitted } else { FIRST_FIT };
     let mut r = fixed.radius / moving.radius;
     let [mut low, mut high] = [0.0, f64::INFINITY];
     let mut last: Option<[f64; 2]> = None;
     let mut normal = DVec3::Z;
     for _ in 0..MAX_FITS {
-        normal = entry_normal(&a.combine(1.0 + r, b, 1.0 + 1.0 / r), center);
-        let (along_a, along_b) = (a.square(normal), b.square(normal));
+        normal = entry_normal(&a.linear_combination(1.0 + r, b, 1.0 + 1.0 / r), center);
+        let (along_a, along_b) = (a.quadratic_form(normal), b.quadratic_form(normal));
         let [least, most] = [1.0 - enough, 1.0 + enough].map(|f| f * f * r * r * along_a);
         if normal.z == 0.0 || (least < along_b && along_b < most) {
             break;
@@ -173,7 +173,7 @@ fn log_ratio(r: f64, q: f64) -> f64 {
 #[inline]
 fn entry_normal(k: &Symmetric, center: DVec3) -> DVec3 {
     let (j, det) = k.adjugate();
-    let jc = j.apply(center);
+    let jc = j.times_vector(center);
     let square = jc.z * jc.z - j.zz * (center.dot(jc) - det);
     let root = square.max(0.0).sqrt();
     let lateral = jc.truncate() - DVec2::new(j.xz, j.yz) * ((jc.z - root) / j.zz);
@@ -213,7 +213,7 @@ pub(super) fn steepest_slope(lateral: DVec2) -> DVec2 {
 /// inverse Hessian of the ellipsoids' support functions at `slope`.
 pub(super) fn slope_per_shadow(difference: &MinkowskiDifference, slope: DVec2) -> DMat2 {
     let normal = slope.extend(1.0);
-    let (_, ellipsoids) = difference.ellipsoids();
+    let (_, ellipsoids) = difference.inertia_ellipsoids();
     let [a, b] = ellipsoids.map(|k| support_derivatives(&k, normal).1);
     (a + b).inverse()
 }
@@ -230,7 +230,7 @@ pub(super) fn predicted_slope(
     shadow: DVec2,
     slopes: [DVec2; 2],
 ) -> DVec2 {
-    let (_, ellipsoids) = difference.ellipsoids();
+    let (_, ellipsoids) = difference.inertia_ellipsoids();
     let n = ((slopes[0] + slopes[1]) * 0.5).extend(1.0);
     let [a, b] =
         [support_derivatives(&ellipsoids[0], n).1, support_derivatives(&ellipsoids[1], n).1];
@@ -241,7 +241,7 @@ pub(super) fn predicted_slope(
 /// components of a normal.
 #[inline]
 fn support_derivatives(k: &Symmetric, normal: DVec3) -> (DVec2, DMat2) {
-    let kn = k.apply(normal);
+    let kn = k.times_vector(normal);
     let inverse_length = 1.0 / normal.dot(kn).sqrt();
     let g = kn.truncate() * inverse_length;
     let lateral = DMat2::from_cols(DVec2::new(k.xx, k.xy), DVec2::new(k.xy, k.yy));

@@ -18,11 +18,11 @@ use super::ties::met_parameter;
 use super::{Context, Portal, PortalStatus, WalkResult};
 use crate::body::{ConvexPolyhedron, LargeFace};
 use crate::setting::VertexPair;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 use crate::solve::observe::{Observer, Support};
 
-/// Minimum cosine of the angle between normals of faces that may be parallel. The faces are parallel
-/// if the bodies hardly reach beyond a plane through both.
+/// Minimum cosine of the angle between the normals of faces that may be parallel. Whether they are is decided by the
+/// excess of the bodies beyond a plane through both.
 const MIN_PARALLEL_COSINE: f64 = 1.0 - 1e-12;
 
 /// Returns the lowest face and a portal in it, if this face is the difference of two large faces and
@@ -36,18 +36,18 @@ pub(crate) fn opposed_face_contact<O: Observer>(context: &mut Context<O>) -> Wal
     if !setting.moving.has_large_faces() || !setting.fixed.has_large_faces() {
         return WalkResult::Lost;
     }
-    let down = context.difference.in_moving(DVec3::Z);
+    let down = context.difference.to_moving_frame(DVec3::Z);
     let Some(f) = setting.moving.large_face_toward(down) else { return WalkResult::Lost };
     if f.has_few_corners() && f.normal.dot(down) < MIN_PARALLEL_COSINE {
         return WalkResult::Lost;
     }
     let found = face_pair_contact(&context.difference, f).unwrap_or(WalkResult::Lost);
     if let WalkResult::Portal(portal, PortalStatus::Lowest(Face { plane, .. })) = &found {
-        context.watch.portal(|| portal.map(|p| p.at));
+        context.watch.portal(|| portal.map(|p| p.coordinates));
         let normal = || context.difference.setting_from_shadow.transpose() * plane.normal;
-        context
-            .watch
-            .support(|| Support::from_point(normal(), &context.difference.vertex(plane.lowest)));
+        context.watch.support(|| {
+            Support::from_point(normal(), &context.difference.vertex_point(plane.lowest))
+        });
     }
     found
 }
@@ -59,23 +59,23 @@ pub(crate) fn opposed_face_contact<O: Observer>(context: &mut Context<O>) -> Wal
 #[inline(never)]
 fn face_pair_contact(difference: &MinkowskiDifference, f: &LargeFace) -> Option<WalkResult> {
     let setting = difference.setting;
-    let g = setting.fixed.large_face_toward(-difference.in_fixed(DVec3::Z))?;
+    let g = setting.fixed.large_face_toward(-difference.to_fixed_frame(DVec3::Z))?;
     let have_few_corners = f.has_few_corners() && g.has_few_corners();
     let normal = difference.moving_normal_to_shadow(f.normal);
     let parallel = normal.dot(difference.fixed_normal_to_shadow(g.normal)) < -MIN_PARALLEL_COSINE;
     if !parallel || normal.z <= 0.0 {
         return None;
     }
-    let middle = difference.center();
+    let middle = difference.center_difference();
     // For widened bodies, the corner of the widening rectangle that is farther from the centre of `M`.
     let corner = |moving: u32, fixed: u32| {
         let (moving, fixed) =
             (origin_vertex(setting.moving, moving), origin_vertex(setting.fixed, fixed));
-        let point = difference.vertex(VertexPair::of(moving, fixed));
+        let point = difference.vertex_point(VertexPair::from_indices(moving, fixed));
         if difference.widening == 0.0 {
             return point;
         }
-        difference.point(point.pair, middle - point.at)
+        difference.widened_point(point.pair, middle - point.coordinates)
     };
     let [p, q] = opposite_corners(difference, f, g);
     let a = corner(p, q);
@@ -100,8 +100,10 @@ fn face_pair_contact(difference: &MinkowskiDifference, f: &LargeFace) -> Option<
         }
         left.map(|_| (portal, line_weights(&portal)))?
     };
-    let is_level = |p: &Point| normal.dot(p.at - a.at).abs() <= difference.noise.point();
-    let [from, to, third] = portal.each_ref().map(Point::shadow);
+    let is_level = |p: &ShadowPoint| {
+        normal.dot(p.coordinates - a.coordinates).abs() <= difference.noise.point_error()
+    };
+    let [from, to, third] = portal.each_ref().map(ShadowPoint::shadow);
     let area = (to - from).perp_dot(third - from);
     if !portal.iter().all(is_level) || !is_wide(difference, &portal, area) {
         return None;
@@ -124,7 +126,8 @@ fn opposite_corners(difference: &MinkowskiDifference, f: &LargeFace, g: &LargeFa
         body.vertices()[origin_vertex(body, h) as usize] - body.inertia().center
     };
     let ([p, ..], [first, ..]) = (f.half_edges, g.half_edges);
-    let first_corner = difference.in_fixed(difference.moving_normal_to_shadow(place(moving, p)));
+    let first_corner =
+        difference.to_fixed_frame(difference.moving_normal_to_shadow(place(moving, p)));
     let mut farthest = (f64::NEG_INFINITY, first);
     for quarters in 0..4 {
         let q = half_edge_at_quarter(fixed, first, quarters);
@@ -147,7 +150,7 @@ fn is_line_left_of(difference: &MinkowskiDifference, portal: &Portal, from: usiz
     let (start, end) = (&portal[from], &portal[(from + 1) % 3]);
     difference.is_left_rounded(start, end).unwrap_or_else(|| {
         let edge = Edge::from_corner(portal, from);
-        -edge.scaled_distance() > difference.touching() * edge.outward().length()
+        -edge.scaled_distance() > difference.touching_distance() * edge.outward().length()
             && difference.is_left(start, end)
     })
 }
@@ -156,7 +159,7 @@ fn is_line_left_of(difference: &MinkowskiDifference, portal: &Portal, from: usiz
 /// `h`.
 fn half_edge_at_quarter(body: &ConvexPolyhedron, h: u32, quarters: u32) -> u32 {
     let topology = body.topology();
-    let range = topology.face(topology.half_edge(h).face);
+    let range = topology.face_half_edges(topology.half_edge(h).face);
     let count = range.end - range.start;
     let ahead = h + quarters * count / 4;
     if ahead < range.end { ahead } else { ahead - count }

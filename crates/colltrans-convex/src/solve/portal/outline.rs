@@ -6,8 +6,9 @@
 //!
 //! If the line passes through a cap at the lowest point of the other body along its axis, three vertices of the rim
 //! around the line make the portal. Otherwise [`mod@super::outline_maximum`] finds the slope at which both outlines
-//! together are highest, and a face walk starts at the support point there. Only these vertices of a rim are
-//! evaluated. The result is a guess, which later stages verify. Formulas: `docs/theory/normal-guesses.md`.
+//! together are highest, and a face walk starts at the support point there. Rims are evaluated by the formula of the
+//! ellipse; vertices are searched only for the portal and for the support point. The result is a guess, which later
+//! stages verify. Formulas: `docs/theory/normal-guesses.md`.
 
 use glam::{DMat2, DVec2, DVec3};
 
@@ -16,7 +17,7 @@ use super::outline_maximum::{Maximum, maximise};
 use super::{Context, NormalGuess, Portal, PortalStatus, normal_of};
 use crate::body::{MAX_RIMS, Rim};
 use crate::setting::VertexPair;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 use crate::solve::observe::Observer;
 
 /// Minimum cosine of the angle between the axis of a rim and the direction for which the cap of the rim is tried.
@@ -33,7 +34,7 @@ pub(crate) fn walk_from_outlines<O: Observer>(
 ) -> Option<(WalkResult, NormalGuess)> {
     let difference = &context.difference;
     let setting = difference.setting;
-    if setting.moving.outline().len() == 0 || setting.fixed.outline().len() == 0 {
+    if setting.moving.rim_outline().len() == 0 || setting.fixed.rim_outline().len() == 0 {
         return None;
     }
     let mut outlines = [Outline::NONE; 2];
@@ -44,7 +45,7 @@ pub(crate) fn walk_from_outlines<O: Observer>(
     }
     let near = |rims: [usize; 2]| {
         let [moving, fixed] = [0, 1].map(|body| outlines[body].rims[rims[body]].vertex);
-        VertexPair::of(moving, fixed)
+        VertexPair::from_indices(moving, fixed)
     };
     Some(match maximise(&outlines, start.normal.truncate())? {
         Maximum::At(slope, rims) => {
@@ -89,7 +90,7 @@ impl Outline {
 
     /// Stores the outline of the moving body, negated.
     fn set_moving(&mut self, difference: &MinkowskiDifference) {
-        self.set_rims(difference.setting.moving.outline(), |rim| {
+        self.set_rims(difference.setting.moving.rim_outline(), |rim| {
             let [to, away] = rim.ends;
             RimInDifference {
                 center: -difference.moving_normal_to_shadow(rim.center),
@@ -103,7 +104,7 @@ impl Outline {
 
     /// Stores the outline of the fixed body, displaced by the offset between the frames.
     fn set_fixed(&mut self, difference: &MinkowskiDifference) {
-        self.set_rims(difference.setting.fixed.outline(), |rim| RimInDifference {
+        self.set_rims(difference.setting.fixed.rim_outline(), |rim| RimInDifference {
             center: difference.difference(DVec3::ZERO, rim.center),
             ..RimInDifference::without_center(rim, |axis| difference.fixed_normal_to_shadow(axis))
         });
@@ -257,9 +258,9 @@ fn lowest_point_on_rims(
     difference: &MinkowskiDifference,
     [moving, fixed]: [u32; 2],
     [of_moving, of_fixed]: [DVec3; 2],
-) -> Point {
+) -> ShadowPoint {
     let setting = difference.setting;
-    let moving = setting.moving.farthest_rim_vertex(difference.in_moving(of_moving), moving);
-    let fixed = setting.fixed.farthest_rim_vertex(-difference.in_fixed(of_fixed), fixed);
-    difference.vertex(VertexPair::of(moving, fixed))
+    let moving = setting.moving.farthest_rim_vertex(difference.to_moving_frame(of_moving), moving);
+    let fixed = setting.fixed.farthest_rim_vertex(-difference.to_fixed_frame(of_fixed), fixed);
+    difference.vertex_point(VertexPair::from_indices(moving, fixed))
 }

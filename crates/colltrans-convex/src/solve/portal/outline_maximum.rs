@@ -47,7 +47,8 @@ pub(super) enum Maximum {
     /// The slope of the maximum, and an active rim of each body.
     At(DVec2, [usize; 2]),
     /// `f` has no maximum, because the line misses the outlines: along this lateral direction all of
-    /// their difference is at positive coordinates. With the lowest rim of each body along it.
+    /// their difference is at positive coordinates. Contains the direction and the lowest rim of each body along
+    /// it.
     Separated(DVec2, [usize; 2]),
 }
 

@@ -8,7 +8,7 @@
 use glam::DVec2;
 
 use super::{Context, Plane};
-use crate::setting::minkowski::Point;
+use crate::setting::minkowski::ShadowPoint;
 use crate::solve::observe::{Observer, Support};
 use colltrans_kernel::determinant::accurate_det;
 
@@ -25,7 +25,7 @@ pub(crate) enum Overlap {
         /// The overlap.
         depth: f64,
         /// Support point that attains the overlap.
-        point: Point,
+        point: ShadowPoint,
     },
 }
 
@@ -37,7 +37,7 @@ const MAX_CORNERS: usize = 64;
 #[inline]
 pub(crate) fn overlap<O: Observer>(
     context: &mut Context<O>,
-    portal: &[Point; 3],
+    portal: &[ShadowPoint; 3],
     tolerance: f64,
 ) -> Overlap {
     let Some(edge) = edge_within(portal, tolerance) else { return Overlap::Ample };
@@ -52,8 +52,8 @@ pub(crate) fn overlap<O: Observer>(
 #[inline(never)]
 fn overlap_near_edge<O: Observer>(
     context: &mut Context<O>,
-    portal: &[Point; 3],
-    edge: [&Point; 2],
+    portal: &[ShadowPoint; 3],
+    edge: [&ShadowPoint; 2],
     tolerance: f64,
 ) -> Overlap {
     if context.difference.shadow_contains_disc_near_edge(edge, tolerance) {
@@ -66,7 +66,7 @@ fn overlap_near_edge<O: Observer>(
 #[inline(never)]
 fn overlap_by_polygon<O: Observer>(
     context: &mut Context<O>,
-    portal: &[Point; 3],
+    portal: &[ShadowPoint; 3],
     tolerance: f64,
 ) -> Overlap {
     let mut corners = [portal[0]; MAX_CORNERS];
@@ -81,7 +81,7 @@ fn overlap_by_polygon<O: Observer>(
             return Overlap::Ample;
         }
         let inward = (-outward).extend(0.0);
-        let is_last = |depth: f64| depth - reach <= context.difference.noise.point();
+        let is_last = |depth: f64| depth - reach <= context.difference.noise.point_error();
         let mut point = context.difference.support_point_from(inward, corners[edge].pair);
         if is_last(outward.dot(point.shadow())) {
             point = Plane::verified_support_point(&context.difference, inward, point);
@@ -104,12 +104,12 @@ fn overlap_by_polygon<O: Observer>(
 }
 
 /// Maximum number of rounds. Each adds a corner, unless rounding makes them repeat. In that case the
-/// last overlap found within the tolerance is returned.
+/// last overlap found within the tolerance is returned, or [`Overlap::Ample`] if there was none.
 const MAX_ROUNDS: usize = 200;
 
 /// Orders the first three corners counter-clockwise and returns the number of corners. If the three are
 /// collinear, the outermost two, or the only one, are the polygon.
-fn order_first_corners(corners: &mut [Point; MAX_CORNERS]) -> usize {
+fn order_first_corners(corners: &mut [ShadowPoint; MAX_CORNERS]) -> usize {
     let [a, b, c] = [0, 1, 2].map(|k| corners[k].shadow());
     let area = accurate_det(b - a, c - a);
     if area < 0.0 {
@@ -118,7 +118,7 @@ fn order_first_corners(corners: &mut [Point; MAX_CORNERS]) -> usize {
     if area != 0.0 {
         return 3;
     }
-    let order = |p: &Point, q: &Point| {
+    let order = |p: &ShadowPoint, q: &ShadowPoint| {
         let (p, q) = (p.shadow(), q.shadow());
         p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y))
     };
@@ -130,10 +130,10 @@ fn order_first_corners(corners: &mut [Point; MAX_CORNERS]) -> usize {
 /// Inserts a corner beyond the edge that begins at corner `edge` of a counter-clockwise polygon,
 /// removes those that are no longer corners, and returns the number of corners.
 fn insert_corner(
-    corners: &mut [Point; MAX_CORNERS],
+    corners: &mut [ShadowPoint; MAX_CORNERS],
     count: usize,
     edge: usize,
-    new: Point,
+    new: ShadowPoint,
 ) -> usize {
     let new_at = new.shadow();
     let mut count = count;
@@ -162,7 +162,7 @@ fn insert_corner(
 
 /// Returns the first edge of the portal within `tolerance` of the line.
 #[inline]
-fn edge_within(portal: &[Point; 3], tolerance: f64) -> Option<[&Point; 2]> {
+fn edge_within(portal: &[ShadowPoint; 3], tolerance: f64) -> Option<[&ShadowPoint; 2]> {
     let is_within = |i: usize, j: usize| {
         let (a, b) = (portal[i].shadow(), portal[j].shadow());
         let area = a.perp_dot(b);
@@ -177,7 +177,7 @@ fn edge_within(portal: &[Point; 3], tolerance: f64) -> Option<[&Point; 2]> {
 
 /// Returns the edge of a counter-clockwise polygon nearest to the line: its index, outward unit normal
 /// and distance. `None` if all corners coincide.
-fn nearest_edge(corners: &[Point]) -> Option<(usize, DVec2, f64)> {
+fn nearest_edge(corners: &[ShadowPoint]) -> Option<(usize, DVec2, f64)> {
     let mut nearest: Option<(usize, DVec2, f64)> = None;
     for (i, corner) in corners.iter().enumerate() {
         let a = corner.shadow();

@@ -2,14 +2,14 @@
 //!
 //! A plane through known vertices of `M` needs no search for a support point. The neighbourhood of one
 //! of the vertices decides whether it is a support point, and bounds how far the bodies reach beyond
-//! the plane ([`settled`](crate::body::ConvexPolyhedron::settled)). A certificate needs this bound in
+//! the plane ([`settled`](crate::body::ConvexPolyhedron::support_with_excess)). A certificate needs this bound in
 //! any case.
 
 use glam::DVec3;
 
 use crate::body::LargeFace;
 use crate::setting::VertexPair;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 
 /// Maximum excess of the bodies beyond two large faces, in noises. For less flat faces, other support
 /// points prove a tighter bound.
@@ -24,8 +24,8 @@ pub(crate) struct Plane {
     pub(crate) normals: [DVec3; 2],
     /// Vertex pair that is lowest along the normal.
     pub(crate) lowest: VertexPair,
-    /// Bound on the distance that the bodies, and the points that they were built from, reach beyond
-    /// this pair along the normal.
+    /// Bound on the distance by which `M`, computed from the bodies or from the points that they were built from,
+    /// reaches below this pair along the normal.
     pub(crate) excess: f64,
 }
 
@@ -71,14 +71,14 @@ impl Plane {
         let normal = difference.setting_from_shadow * normal;
         let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
         let length = normal.length();
-        let most = 0.5 * difference.noise.point();
-        let (moving, p) = setting.moving.support_at(normals[0], length, near.moving.0, most)?;
-        let (fixed, q) = setting.fixed.support_at(-normals[1], length, near.fixed.0, most)?;
+        let most = 0.5 * difference.noise.point_error();
+        let (moving, p) = setting.moving.support_within(normals[0], length, near.moving.0, most)?;
+        let (fixed, q) = setting.fixed.support_within(-normals[1], length, near.fixed.0, most)?;
         let to_unit = 1.0 / length;
         Some(Self {
             normal: normal * to_unit,
             normals: normals.map(|n| n * to_unit),
-            lowest: VertexPair::of(moving, fixed),
+            lowest: VertexPair::from_indices(moving, fixed),
             excess: p + q + setting.input_excess(),
         })
     }
@@ -97,8 +97,8 @@ impl Plane {
         let setting = difference.setting;
         let normal = (difference.setting_from_shadow * normal).normalize();
         let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-        let lowest = VertexPair::of(f.corners[0], g.corners[0]);
-        let noise = difference.noise.point();
+        let lowest = VertexPair::from_indices(f.corners[0], g.corners[0]);
+        let noise = difference.noise.point_error();
         let most = 0.5 * noise;
         let excess = setting.moving.large_face_excess(f, normals[0], 1.0, lowest.moving.0, most)?
             + setting.fixed.large_face_excess(g, -normals[1], 1.0, lowest.fixed.0, most)?;
@@ -113,9 +113,9 @@ impl Plane {
     pub(super) fn verified_support_point(
         difference: &MinkowskiDifference,
         normal: DVec3,
-        climbed: Point,
-    ) -> Point {
+        climbed: ShadowPoint,
+    ) -> ShadowPoint {
         let lowest = Self::at_support(difference, normal, climbed.pair).lowest;
-        if lowest == climbed.pair { climbed } else { difference.point(lowest, normal) }
+        if lowest == climbed.pair { climbed } else { difference.widened_point(lowest, normal) }
     }
 }

@@ -3,7 +3,7 @@
 //! - *Invariant*: the three shadows contain the line, counter-clockwise. This is decided exactly, with ties broken
 //!   consistently.
 //! - *Step*: a support point along the portal's normal that lies below its plane replaces one of the three points.
-//!   This lowers the height at which the line crosses the portal.
+//!   The height at which the line crosses the portal never rises. It falls unless the line passes a kept edge.
 //! - *End*: no point of `M` lies below the plane by more than rounding error. Then the plane proves the lower bound,
 //!   and the portal the upper one.
 //!
@@ -16,7 +16,7 @@ use super::overlap::{Overlap, overlap};
 use super::plane::{Face, Plane};
 use super::{Context, Portal, PortalStatus};
 use crate::setting::VertexPair;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 use crate::solve::observe::{Observer, Support};
 use colltrans_kernel::determinant::accurate_det;
 use colltrans_kernel::plane::triangle_normal;
@@ -29,8 +29,8 @@ const TIES_AFTER: usize = 200;
 /// this happens in all frames.
 pub(crate) const MAX_PORTALS: usize = 10_000;
 
-/// Maximum number of narrow portals; at most five have been observed. More of them cycle, which another
-/// frame prevents.
+/// Maximum number of narrow portals in a refinement; at most five have been observed. A refinement with more is
+/// assumed to cycle, and the cast is repeated, in a rotated frame if it started from scratch.
 const MAX_NARROW: usize = 32;
 
 /// Result of refinement.
@@ -54,8 +54,10 @@ pub(crate) fn supported_face<O: Observer>(
 ) -> Option<Face> {
     let normal = portal_normal(&context.difference, portal)?;
     let plane = Plane::if_supported_at(&context.difference, normal, portal[2].pair)?;
-    context.watch.portal(|| portal.map(|p| p.at));
-    context.watch.support(|| Support::from_point(normal, &context.difference.vertex(plane.lowest)));
+    context.watch.portal(|| portal.map(|p| p.coordinates));
+    context
+        .watch
+        .support(|| Support::from_point(normal, &context.difference.vertex_point(plane.lowest)));
     Some(Face { plane, weights: line_weights(portal) })
 }
 
@@ -72,7 +74,7 @@ pub(crate) fn refine<O: Observer>(
     let mut newest = 2;
     let mut narrow = 0;
     for round in 0..most {
-        context.watch.portal(|| portal.map(|p| p.at));
+        context.watch.portal(|| portal.map(|p| p.coordinates));
         let plane = match portal_normal(&context.difference, portal) {
             Some(plane) => plane,
             None if narrow == MAX_NARROW => return None,
@@ -88,7 +90,7 @@ pub(crate) fn refine<O: Observer>(
         };
         let point = context.difference.support_point_from(plane, portal[newest].pair);
         context.watch.support(|| Support::from_point(plane, &point));
-        let rounding = context.difference.noise.plane(round >= TIES_AFTER);
+        let rounding = context.difference.noise.plane_tolerance(round >= TIES_AFTER);
         let below = match plane_or_lower_point(&context.difference, portal, plane, point, rounding)
         {
             Err(point) => point,
@@ -110,9 +112,9 @@ fn plane_or_lower_point(
     difference: &MinkowskiDifference,
     portal: &Portal,
     normal: DVec3,
-    found: Point,
+    found: ShadowPoint,
     rounding: f64,
-) -> Result<Plane, Point> {
+) -> Result<Plane, ShadowPoint> {
     if is_below(portal, normal, &found, rounding) {
         return Err(found);
     }
@@ -128,17 +130,20 @@ fn verified_plane(
     normal: DVec3,
     found: VertexPair,
     rounding: f64,
-) -> Result<Plane, Point> {
+) -> Result<Plane, ShadowPoint> {
     let plane = Plane::at_support(difference, normal, found);
     if plane.lowest == found {
         return Ok(plane);
     }
-    let point = difference.point(plane.lowest, normal);
+    let point = difference.widened_point(plane.lowest, normal);
     if is_below(portal, normal, &point, rounding) { Err(point) } else { Ok(plane) }
 }
 
-/// Returns how much is proven about a portal that the line passes with these weights. Given the support
-/// pair `found`, it is the lowest if no point of `M` lies below it along `normal`.
+/// Returns [`PortalStatus::Lowest`] if `found` is verified as the support pair along `normal`, or if the support point
+/// found instead does not lie below the portal by more than rounding error. Otherwise returns
+/// [`PortalStatus::EnclosesLine`].
+///
+/// `found` is the pair of a corner of the portal. `weights` are those of the line in the portal.
 #[inline]
 pub(super) fn status_at_support(
     difference: &MinkowskiDifference,
@@ -147,7 +152,7 @@ pub(super) fn status_at_support(
     found: VertexPair,
     weights: [f64; 3],
 ) -> PortalStatus {
-    let rounding = difference.noise.plane(false);
+    let rounding = difference.noise.plane_tolerance(false);
     match verified_plane(difference, portal, normal, found, rounding) {
         Ok(plane) => PortalStatus::Lowest(Face { plane, weights }),
         Err(_) => PortalStatus::EnclosesLine,
@@ -156,14 +161,14 @@ pub(super) fn status_at_support(
 
 /// Checks whether a point lies below a portal along `normal` by more than rounding error.
 #[inline]
-pub(super) fn is_below(portal: &Portal, normal: DVec3, point: &Point, rounding: f64) -> bool {
+pub(super) fn is_below(portal: &Portal, normal: DVec3, point: &ShadowPoint, rounding: f64) -> bool {
     depth_below(portal, normal, point) > rounding * normal.length()
 }
 
 /// Returns the separating line at the silhouette of `M`, if the line `t d` is within the touching
 /// distance of the silhouette. `None` if the overlap of the shadows exceeds this distance.
 fn silhouette<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<SeparatingLine> {
-    match overlap(context, portal, context.difference.touching()) {
+    match overlap(context, portal, context.difference.touching_distance()) {
         Overlap::Slight { inward, depth, point } => {
             Some(SeparatingLine { normal: inward, margin: -depth, point, end: point.pair })
         }
@@ -174,13 +179,17 @@ fn silhouette<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<
 /// Returns the depth of a point below the lowest corner of the portal along `normal`, times the length
 /// of `normal`.
 #[inline]
-pub(super) fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
-    let depth = |corner: &Point| normal.dot(corner.at - point.at);
+pub(super) fn depth_below(portal: &Portal, normal: DVec3, point: &ShadowPoint) -> f64 {
+    let depth = |corner: &ShadowPoint| normal.dot(corner.coordinates - point.coordinates);
     depth(&portal[0]).min(depth(&portal[1])).min(depth(&portal[2]))
 }
 
 /// Replaces the corner whose exchange keeps the line inside the portal, and returns its index.
-pub(super) fn exchange(difference: &MinkowskiDifference, portal: &mut Portal, new: Point) -> usize {
+pub(super) fn exchange(
+    difference: &MinkowskiDifference,
+    portal: &mut Portal,
+    new: ShadowPoint,
+) -> usize {
     let left = |i: usize| difference.is_left(&portal[i], &new);
     let (first, second) = (left(0), left(1));
     // Seen from the new point, the line is in the triangle with the edge `i -> j` where the sides
@@ -206,14 +215,14 @@ pub(super) fn exchange(difference: &MinkowskiDifference, portal: &mut Portal, ne
 /// to have a plane.
 #[inline]
 pub(super) fn portal_normal(difference: &MinkowskiDifference, portal: &Portal) -> Option<DVec3> {
-    let normal = triangle_normal(portal.map(|p| p.at));
+    let normal = triangle_normal(portal.map(|p| p.coordinates));
     is_wide(difference, portal, normal.z).then_some(normal)
 }
 
 /// Returns the normal of a narrow portal from its rounded corners. It is lateral if rounding has
 /// inverted the portal, and `X` if the corners have no plane.
 fn narrow_portal_normal(portal: &Portal) -> DVec3 {
-    let own = triangle_normal(portal.map(|p| p.at));
+    let own = triangle_normal(portal.map(|p| p.coordinates));
     if own.z > 0.0 {
         own
     } else if own.truncate().length_squared() > 0.0 {
@@ -226,10 +235,10 @@ fn narrow_portal_normal(portal: &Portal) -> DVec3 {
 /// Checks whether a portal is wider than the touching distance. `area` is twice the area of its shadow.
 #[inline]
 pub(super) fn is_wide(difference: &MinkowskiDifference, portal: &Portal, area: f64) -> bool {
-    let [a, b, c] = portal.each_ref().map(Point::shadow);
+    let [a, b, c] = portal.each_ref().map(ShadowPoint::shadow);
     let longest = (b - a).length_squared().max((c - b).length_squared());
     let longest = longest.max((a - c).length_squared());
-    let least = difference.touching();
+    let least = difference.touching_distance();
     area > 0.0 && area * area > least * least * longest
 }
 

@@ -14,7 +14,7 @@ use super::refine::{index_of_largest, line_weights, portal_normal, status_at_sup
 use super::{Context, Face, LinePosition, Plane, Portal, PortalStatus, normal_of};
 use crate::body::VertexId;
 use crate::setting::VertexPair;
-use crate::setting::minkowski::{MinkowskiDifference, Point};
+use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 use crate::solve::observe::{Observer, Support};
 use colltrans_kernel::determinant::accurate_det;
 
@@ -42,7 +42,7 @@ pub(super) enum VertexCase {
 #[inline(never)]
 pub(super) fn classify_vertex<O: Observer>(
     context: &mut Context<O>,
-    vertex: &Point,
+    vertex: &ShadowPoint,
     slope: DVec2,
 ) -> VertexCase {
     let normal = normal_of(slope);
@@ -50,8 +50,9 @@ pub(super) fn classify_vertex<O: Observer>(
         let portal =
             context.difference.setting.fixed.neighbours(vertex.pair.fixed.0).first().and_then(
                 |&q| {
-                    let to =
-                        context.difference.vertex(VertexPair { fixed: VertexId(q), ..vertex.pair });
+                    let to = context
+                        .difference
+                        .vertex_point(VertexPair { fixed: VertexId(q), ..vertex.pair });
                     triangle_at_corner(&context.difference, vertex, &to)
                 },
             );
@@ -66,8 +67,8 @@ pub(super) fn classify_vertex<O: Observer>(
         }
     };
     let residual = vertex.shadow().length();
-    if residual <= context.difference.noise.point()
-        && context.difference.is_upper_bound(vertex.at, residual, normal)
+    if residual <= context.difference.noise.point_error()
+        && context.difference.is_upper_bound(vertex.coordinates, residual, normal)
     {
         return at_corner();
     }
@@ -88,14 +89,14 @@ pub(super) fn classify_vertex<O: Observer>(
     // `vertex` is the first or the second of the three corners.
     let own = usize::from(portal[0].pair != vertex.pair);
     let [i, j] = [1 - own, 2];
-    let [a, b] = [i, j].map(|k| portal[k].at - vertex.at);
+    let [a, b] = [i, j].map(|k| portal[k].coordinates - vertex.coordinates);
     let (u, v) = (a.truncate(), b.truncate());
     let area = accurate_det(u, v);
-    let least = context.difference.touching() * (u.length() + v.length());
+    let least = context.difference.touching_distance() * (u.length() + v.length());
     let shares = [-accurate_det(shadow, v), -accurate_det(u, shadow)].map(|p| (p / area).max(0.0));
     let sum = shares[0] + shares[1];
     let height = shares[0] * normal.dot(a) + shares[1] * normal.dot(b);
-    let level = height <= context.difference.noise.point() * normal.length();
+    let level = height <= context.difference.noise.point_error() * normal.length();
     // Narrower triangles have no plane.
     if area.abs() <= least || sum > 1.0 || !level {
         return VertexCase::Toward(line);
@@ -108,7 +109,7 @@ pub(super) fn classify_vertex<O: Observer>(
 
 /// Returns the weights of a point on the first edge of a portal: at the fraction `share` of the edge, from
 /// its end `from`.
-fn weights_on_first_edge(portal: &Portal, from: &Point, share: f64) -> [f64; 3] {
+fn weights_on_first_edge(portal: &Portal, from: &ShadowPoint, share: f64) -> [f64; 3] {
     if portal[0].pair == from.pair { [1.0 - share, share, 0.0] } else { [share, 1.0 - share, 0.0] }
 }
 
@@ -116,20 +117,20 @@ fn weights_on_first_edge(portal: &Portal, from: &Point, share: f64) -> [f64; 3] 
 /// counter-clockwise. `None` if the body has no other edge there.
 fn triangle_at_corner(
     difference: &MinkowskiDifference,
-    from: &Point,
-    to: &Point,
+    from: &ShadowPoint,
+    to: &ShadowPoint,
 ) -> Option<Portal> {
-    let [moving, fixed] = from.pair.numbers();
+    let [moving, fixed] = from.pair.indices();
     let setting = difference.setting;
     let other = |neighbours: &[u32], not: u32| neighbours.iter().copied().find(|&w| w != not);
     let third = if to.pair.fixed.0 == fixed {
         let moving = other(setting.moving.neighbours(moving), to.pair.moving.0)?;
-        VertexPair::of(moving, fixed)
+        VertexPair::from_indices(moving, fixed)
     } else {
         let fixed = other(setting.fixed.neighbours(fixed), to.pair.fixed.0)?;
-        VertexPair::of(moving, fixed)
+        VertexPair::from_indices(moving, fixed)
     };
-    let third = difference.vertex(third);
+    let third = difference.vertex_point(third);
     let (first, second) = (to.shadow() - from.shadow(), third.shadow() - from.shadow());
     Some(if first.perp_dot(second) < 0.0 { [*to, *from, third] } else { [*from, *to, third] })
 }
@@ -168,13 +169,15 @@ pub(super) fn line_position_with_ties<O: Observer>(
 #[inline(never)]
 pub(super) fn lowest_edge<O: Observer>(
     context: &mut Context<O>,
-    [from, to]: &[Point; 2],
+    [from, to]: &[ShadowPoint; 2],
     normal: DVec3,
 ) -> Option<(Portal, Face)> {
     let share = met_parameter(&context.difference, [from, to], normal)?;
     let portal = triangle_at_corner(&context.difference, from, to)?;
     let plane = Plane::if_supported_at(&context.difference, normal, from.pair)?;
-    context.watch.support(|| Support::from_point(normal, &context.difference.vertex(plane.lowest)));
+    context
+        .watch
+        .support(|| Support::from_point(normal, &context.difference.vertex_point(plane.lowest)));
     let weights = weights_on_first_edge(&portal, from, share);
     Some((portal, Face { plane, weights }))
 }
@@ -186,13 +189,13 @@ pub(super) fn lowest_edge<O: Observer>(
 /// perpendicular to `normal`.
 pub(super) fn met_parameter(
     difference: &MinkowskiDifference,
-    [from, to]: [&Point; 2],
+    [from, to]: [&ShadowPoint; 2],
     normal: DVec3,
 ) -> Option<f64> {
     let share = nearest_parameter([from.shadow(), to.shadow()]);
-    let contact = from.at + (to.at - from.at) * share;
+    let contact = from.coordinates + (to.coordinates - from.coordinates) * share;
     let residual = contact.truncate().length();
-    let is_met = residual <= difference.noise.point()
+    let is_met = residual <= difference.noise.point_error()
         && difference.is_upper_bound_on_edge([from, to], contact, residual, normal);
     is_met.then_some(share)
 }
@@ -204,17 +207,20 @@ pub(super) fn met_parameter(
 fn lowest_face<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<Face> {
     let normal = portal_normal(&context.difference, portal)?;
     let weights = line_weights(portal);
-    let contact = portal.iter().zip(weights).map(|(corner, w)| corner.at * w).sum::<DVec3>();
+    let contact =
+        portal.iter().zip(weights).map(|(corner, w)| corner.coordinates * w).sum::<DVec3>();
     let residual = contact.truncate().length();
     let least = 2 - index_of_largest([weights[2], weights[1], weights[0]].map(|w| -w));
     let edge = [&portal[(least + 1) % 3], &portal[(least + 2) % 3]];
-    if residual > context.difference.noise.point()
+    if residual > context.difference.noise.point_error()
         || !context.difference.is_upper_bound_on_edge(edge, contact, residual, normal)
     {
         return None;
     }
     let plane = Plane::if_supported_at(&context.difference, normal, portal[2].pair)?;
-    context.watch.support(|| Support::from_point(normal, &context.difference.vertex(plane.lowest)));
+    context
+        .watch
+        .support(|| Support::from_point(normal, &context.difference.vertex_point(plane.lowest)));
     Some(Face { plane, weights })
 }
 
@@ -230,7 +236,7 @@ pub(super) enum AdjacentFace {
 /// `None` if no neighbour of the vertex lies in this direction, or beyond the edge found there.
 pub(super) fn adjacent_face<O: Observer>(
     context: &mut Context<O>,
-    vertex: &Point,
+    vertex: &ShadowPoint,
     slope: DVec2,
     line: DVec2,
 ) -> Option<AdjacentFace> {
@@ -238,7 +244,7 @@ pub(super) fn adjacent_face<O: Observer>(
     let toward_line = RotatingPlane { normal, outward: line };
     let second = first_vertex_met(&context.difference, &vertex, &toward_line)?;
     // The plane after the rotation, which contains both vertices.
-    let edge = second.at - vertex.at;
+    let edge = second.coordinates - vertex.coordinates;
     let turn = normal.dot(edge) / toward_line.outward.dot(edge.truncate());
     let normal = normal_of(slope - toward_line.outward * turn);
     let rounded = context.difference.is_left_rounded(&vertex, &second);

@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use super::PlacedFacets;
-use crate::body::edges::NONE;
+use crate::body::edges::NO_NEIGHBOUR;
 use crate::body::tree::{self, Node};
 use colltrans_convex::body::Aabb;
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 /// Maximum distance of facets from their common plane, in multiples of the reach of the body.
 const PLANE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
@@ -68,11 +68,12 @@ impl FacetPlane {
                 }
             }
         }
-        let facing = node.facets().map(|t| tree::normal(placed.facet_corners(t)).0).sum::<DVec3>();
+        let facing =
+            node.facets().map(|t| tree::area_vector(placed.facet_corners(t)).0).sum::<DVec3>();
         let normal = (area * area.dot(facing).signum()).try_normalize()?;
         let tilt = tolerance * longest / area.length();
         let plane = Self { normal, origin: extremes[0], extremes, tolerance, tilt };
-        let alike = |t: usize| tree::normal(placed.facet_corners(t)).0.dot(normal) > 0.0;
+        let alike = |t: usize| tree::area_vector(placed.facet_corners(t)).0.dot(normal) > 0.0;
         let lies = corners().all(|p| plane.contains_point(p)) && node.facets().all(alike);
         lies.then_some(plane)
     }
@@ -100,18 +101,21 @@ impl<'a> PairFilter<'a> {
             rounding: 16.0 * f64::EPSILON * farthest,
             boxes: vec![Aabb::EMPTY; nodes.len()],
             planes: nodes.iter().map(|node| FacetPlane::new(placed, node, tolerance)).collect(),
-            shared_vertices: vec![[NONE; 3]; nodes.len()],
+            shared_vertices: vec![[NO_NEIGHBOUR; 3]; nodes.len()],
         };
         // Children follow their node, so reverse order visits them first.
         for (k, node) in nodes.iter().enumerate().rev() {
             (filter.boxes[k], filter.shared_vertices[k]) = if node.is_leaf() {
                 let triangles = node.facets().map(|t| placed.solid.triangles[t]);
                 let points = node.facets().flat_map(|t| placed.facet_corners(t));
-                (Aabb::of_points(points), triangles.reduce(common_vertices).unwrap_or([NONE; 3]))
-            } else {
-                let [m, n] = [0, 1].map(|n| k + node.skip as usize + n);
                 (
-                    filter.boxes[m].join(&filter.boxes[n]),
+                    Aabb::from_points(points),
+                    triangles.reduce(common_vertices).unwrap_or([NO_NEIGHBOUR; 3]),
+                )
+            } else {
+                let [m, n] = [0, 1].map(|n| k + node.child_offset as usize + n);
+                (
+                    filter.boxes[m].union(&filter.boxes[n]),
                     common_vertices(filter.shared_vertices[m], filter.shared_vertices[n]),
                 )
             };
@@ -119,22 +123,23 @@ impl<'a> PairFilter<'a> {
         filter
     }
 
-    /// Checks whether the facets of two nodes cannot touch, lie in one plane, or all have a common vertex (a fan).
+    /// Checks whether the facets of two nodes need not be compared. They cannot touch, or they lie in one plane with
+    /// the same orientation, or they all have a common vertex (a fan).
     pub(super) fn excludes_pair(&self, a: usize, b: usize) -> bool {
         let one_plane = || match (&self.planes[a], &self.planes[b]) {
             (Some(f), Some(g)) => a == b || f.is_coplanar_with(g),
             _ => false,
         };
-        !self.boxes[a].meets(&self.boxes[b])
+        !self.boxes[a].intersects(&self.boxes[b])
             || one_plane()
-            || common_vertices(self.shared_vertices[a], self.shared_vertices[b])[0] != NONE
+            || common_vertices(self.shared_vertices[a], self.shared_vertices[b])[0] != NO_NEIGHBOUR
             || self.leaf_avoids_box(a, b)
             || self.leaf_avoids_box(b, a)
     }
 
     /// Returns the longest side of the box of a node.
     pub(super) fn longest_side(&self, node: usize) -> f64 {
-        self.boxes[node].size().max_element()
+        self.boxes[node].side_lengths().max_element()
     }
 
     /// Checks whether the first node is a leaf that is longer than the second node by [`LENGTH_FACTOR`], and whose
@@ -152,11 +157,11 @@ impl<'a> PairFilter<'a> {
     /// facet, or to an edge of each.
     fn facet_avoids_box(&self, triangle: usize, bounds: &Aabb) -> bool {
         let corners = self.placed.facet_corners(triangle);
-        if !Aabb::of_triangle(corners).meets(bounds) {
+        if !Aabb::from_triangle(corners).intersects(bounds) {
             return true;
         }
-        work::count(1);
-        let (center, half) = (bounds.center(), bounds.size() * 0.5);
+        visit_counter::count_visits(1);
+        let (center, half) = (bounds.center(), bounds.side_lengths() * 0.5);
         let separates = |axis: DVec3| {
             let [a, b, c] = corners.map(|p| axis.dot(p - center));
             let reach = axis.abs().dot(half) + axis.abs().element_sum() * self.rounding;
@@ -169,9 +174,9 @@ impl<'a> PairFilter<'a> {
     }
 }
 
-/// Returns the elements of both lists, followed by [`NONE`].
+/// Returns the vertices that both lists contain, in increasing order, followed by [`NONE`].
 fn common_vertices(a: [u32; 3], b: [u32; 3]) -> [u32; 3] {
-    let mut both = a.map(|v| if b.contains(&v) { v } else { NONE });
+    let mut both = a.map(|v| if b.contains(&v) { v } else { NO_NEIGHBOUR });
     both.sort_unstable();
     both
 }

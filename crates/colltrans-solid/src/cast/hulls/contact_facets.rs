@@ -8,8 +8,8 @@ use super::{Hulls, Surface, SurfacePoint};
 use crate::solve::bound::box_gaps;
 use crate::solve::overlap::{Overlap, is_overlap};
 use crate::solve::projected::Projected;
-use crate::solve::scene::{Scene, Side};
-use crate::solve::search::{Aim, Found, SLACK, Search};
+use crate::solve::scene::{PairFrame, PlacedBody};
+use crate::solve::search::{Aim, GapSearch, LeastGap, SLACK};
 use crate::solve::separate::{HEIGHTS, max_height_along};
 use colltrans_convex::answer::{Contact, Outcome};
 
@@ -27,7 +27,7 @@ pub(in crate::cast) enum ContactGuess {
     /// Nothing blocks the moving body below the limit.
     Free,
     /// Two facets block, and no gap is less than the length.
-    Stop(Found, f64),
+    Stop(LeastGap, f64),
 }
 
 impl Hulls<'_> {
@@ -35,7 +35,7 @@ impl Hulls<'_> {
     /// not decide it. Adds the number of compared pairs to `leaves`.
     pub(in crate::cast) fn guess_at_contact(
         &self,
-        scene: &Scene,
+        scene: &PairFrame,
         limit: f64,
         leaves: &mut u32,
     ) -> Option<ContactGuess> {
@@ -55,14 +55,14 @@ impl Hulls<'_> {
         let Outcome::Contact(contact) = &self.first_outcome else { return false };
         let proof = &contact.certificate;
         let depth = -proof.lower * proof.normal.dot(self.cast.setting.direction);
-        proof.upper < 0.0 && depth < MAX_SHALLOW_DEPTH * self.cast.setting.scale()
+        proof.upper < 0.0 && depth < MAX_SHALLOW_DEPTH * self.cast.setting.size()
     }
 
     /// Finds two facets around such a contact that show an overlap of the bodies of `scene`; `None` if there are
     /// none. Adds the number of tested pairs to `leaves`.
     pub(in crate::cast) fn shallow_overlap(
         &self,
-        scene: &Scene,
+        scene: &PairFrame,
         leaves: &mut u32,
     ) -> Option<Overlap> {
         let Outcome::Contact(contact) = &self.first_outcome else { return None };
@@ -86,7 +86,7 @@ impl Surface<'_> {
     /// Vertices lower than the hull vertex `from` by twice the displacement of the offset and by rounding cannot be
     /// highest. The others are found from `from` over edges of the hull, as the plateau of a support point is. If
     /// the hull lacks vertices, or more than [`MAX_TOP_VERTICES`] remain, the tree is searched.
-    fn max_height(&self, scene: &Scene, side: &Side, normal: DVec3, from: u32) -> f64 {
+    fn max_height(&self, scene: &PairFrame, side: &PlacedBody, normal: DVec3, from: u32) -> f64 {
         let Self { body, .. } = self;
         let local = side.matrix.transpose() * normal;
         let height = |v: u32| local.dot(body.hull.vertices()[v as usize]);
@@ -114,18 +114,19 @@ impl Surface<'_> {
 
 /// Computes a lower bound of the distance of the offset bodies along the normal of a contact of their hulls. It is
 /// not positive if no plane with that normal certainly separates them.
-fn plane_margin(scene: &Scene, [p, q]: &[Surface; 2], contact: &Contact) -> f64 {
+fn plane_margin(scene: &PairFrame, [p, q]: &[Surface; 2], contact: &Contact) -> f64 {
     let (normal, pair) = (contact.certificate.normal, contact.certificate.pairs[0]);
     let moving = p.max_height(scene, &scene.moving, normal, pair.moving.0);
     let fixed = q.max_height(scene, &scene.fixed, -normal, pair.fixed.0);
     normal.dot(scene.fixed.offset[0]) - fixed - moving - HEIGHTS * scene.noise
 }
 
-/// Computes a lower bound, a length, of all gaps of facets along the direction, up to the rounding of one division.
-/// It also proves that the bodies do not overlap. The boxes prove it if the direction is an axis of both bodies, or
-/// else a plane with the normal of the hulls' contact. `None` if neither does.
+/// Computes a lower bound, a length, of all gaps of facets along the direction, up to the rounding of one division. It
+/// also proves that the bodies do not overlap. The gap of the boxes is used if the direction is an axis of both bodies
+/// and the gap is neither negative nor below the lower bound of the hulls' contact. Otherwise a plane with the normal
+/// of that contact is tested. `None` if it does not separate the bodies.
 pub(super) fn gap_lower_bound(
-    scene: &Scene,
+    scene: &PairFrame,
     bodies: &[Surface; 2],
     contact: &Contact,
 ) -> Option<f64> {
@@ -145,7 +146,7 @@ pub(super) fn gap_lower_bound(
 /// Finds the blocking pair among the facets around a contact of the hulls. The result is free if the lower bound of
 /// all gaps reaches `limit`, and `None` if no pair attains that bound to within the slack of a search.
 fn blocking_pair(
-    scene: &Scene,
+    scene: &PairFrame,
     bodies: &[Surface; 2],
     contact: &Contact,
     limit: f64,
@@ -158,10 +159,12 @@ fn blocking_pair(
     }
     let [p, q] = facets_around_contact(scene, bodies, contact)?;
     let pairs = p.facets().iter().flat_map(|&f| q.facets().iter().map(move |&g| [f, g]));
-    let mut best: Option<Found> = None;
+    let mut best: Option<LeastGap> = None;
     for pair in pairs {
         *leaves += 1;
-        let Some(found) = Search::new(scene, Aim::Stop, limit, |_, _| ()).of_pair(pair) else {
+        let Some(found) =
+            GapSearch::new(scene, Aim::Stop, limit, |_, _| ()).compare_triangles(pair)
+        else {
             continue;
         };
         if found.gap <= least + SLACK * scene.noise
@@ -179,7 +182,7 @@ fn blocking_pair(
 
 /// Finds the facets of both bodies around a contact of their hulls; `None` if a body has no facet there.
 fn facets_around_contact(
-    scene: &Scene,
+    scene: &PairFrame,
     bodies: &[Surface; 2],
     contact: &Contact,
 ) -> Option<[FacetGroup; 2]> {

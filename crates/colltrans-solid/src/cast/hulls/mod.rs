@@ -1,8 +1,8 @@
 //! Casts of convex solids by the cast of their convex hulls, before any search.
 //!
 //! - [`transferred`] uses the answer of the hulls' cast, if its certificate holds for the solids too.
-//! - [`contact_facets`] uses only the normal and the points of the hulls' contact. It proves a lower bound by a
-//!   plane with that normal and the upper bound by the gap of two facets around the points.
+//! - [`contact_facets`] uses only the normal and the points of the hulls' contact. It proves a lower bound by a plane
+//!   with that normal, or by the bounding boxes. The gap of two facets around the points gives the upper bound.
 //!
 //! One of these decides nearly all casts of convex solids; the others are searched. The second method is valid for
 //! any rounding of the hulls and for solids that are not exactly convex. Derivations:
@@ -47,12 +47,12 @@ impl<'a> Hulls<'a> {
     /// state an overlap, or the cast fails.
     pub(super) fn of_cast(cast: &Cast<'a, Solid>) -> Option<Self> {
         let options = cast.options();
-        if options.keep > 0.0 || options.overlapping == Some(true) {
+        if options.min_gap > 0.0 || options.overlapping == Some(true) {
             return None;
         }
         let bodies = [Surface::of_convex(cast.moving())?, Surface::of_convex(cast.fixed())?];
         let Setting { direction, length, unit, .. } = cast.setting;
-        let hull_bodies = cast.setting.bodies.holding(bodies.map(|surface| &surface.body.hull));
+        let hull_bodies = cast.setting.bodies.with_bodies(bodies.map(|surface| &surface.body.hull));
         let setting = Setting { bodies: hull_bodies, direction, length, unit };
         let cast = Cast { setting, options: Options::default() };
         Some(Self {
@@ -114,7 +114,7 @@ impl CachedBody {
 impl ConvexBody {
     /// Returns the hull of a solid, computed on the first request; `None` if the solid is not convex.
     fn cached(solid: &Solid) -> Option<&Self> {
-        solid.kept().get_or_make(|| CachedBody::new(solid))?.0.as_ref()
+        solid.derived_data().get_or_make(|| CachedBody::new(solid))?.0.as_ref()
     }
 
     /// Builds the hull of a convex solid; `None` if the points have no hull or it is flat.
@@ -151,7 +151,7 @@ fn is_convex(solid: &Solid) -> bool {
         let mut across = solid.neighbours()[t].iter().flat_map(|&n| triangles[n as usize]);
         across.all(|v| normal.dot(place(v) - a) <= CONVEXITY_TOLERANCE * solid.reach())
     };
-    solid.is_closed() && solid.spans().len() == 1 && (0..triangles.len()).all(bends_outwards)
+    solid.is_closed() && solid.shell_bounds().len() == 1 && (0..triangles.len()).all(bends_outwards)
 }
 
 /// Computes the maximum height of the hull above the planes of a convex solid's facets. No point of a facet is

@@ -40,8 +40,8 @@ impl<'a> Surface<'a> {
         self.solid.triangles()[triangle as usize].map(|v| self.solid.vertices()[v as usize])
     }
 
-    /// Iterates over the triangles around a vertex of the hull, each with the position of the vertex among its
-    /// corners.
+    /// Iterates over at most [`MAX_STEPS`] triangles around a vertex of the hull, each with the position of the vertex
+    /// among its corners.
     pub(super) fn triangles_around(
         &self,
         vertex: u32,
@@ -129,7 +129,7 @@ impl<'a> Surface<'a> {
             count = usize::checked_sub(count, 1)?;
             let at = stack[count];
             let node = &nodes[at as usize];
-            let bounds = node.bounds.grown(box_slack);
+            let bounds = node.bounds.expanded(box_slack);
             if bounds.low.cmpgt(point.position).any() || bounds.high.cmplt(point.position).any() {
                 continue;
             }
@@ -144,7 +144,7 @@ impl<'a> Surface<'a> {
                     return found;
                 }
             } else {
-                [stack[count], stack[count + 1]] = node.children(at);
+                [stack[count], stack[count + 1]] = node.child_positions(at);
                 count += 2;
             }
         }

@@ -17,9 +17,9 @@ use crate::body::Solid;
 use crate::cast::SolidFree;
 use crate::cast::boxes::moves_away;
 use crate::cast::{check_thickness, default_tolerance};
-use crate::solve::contact::{SolidContact, feature};
-use crate::solve::scene::{Scene, permutes_axes};
-use crate::solve::search::{Found, SLACK};
+use crate::solve::contact::{SolidContact, feature_at};
+use crate::solve::scene::{PairFrame, permutes_axes};
+use crate::solve::search::{LeastGap, SLACK};
 use crate::solve::separate;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::answer::{Bounded, Certificate, Clearance, Contact, Outcome, Separation};
@@ -78,7 +78,7 @@ impl Hulls<'_> {
     pub(in crate::cast) fn touching_clearance(
         &self,
         solids: &Cast<'_, Solid>,
-        scene: &Scene,
+        scene: &PairFrame,
     ) -> Option<Clearance<Solid>> {
         let Outcome::Contact(contact) = &self.first_outcome else { return None };
         let proof = &contact.certificate;
@@ -95,7 +95,7 @@ impl Hulls<'_> {
     pub(in crate::cast) fn clearance_by_facets(
         &self,
         solids: &Cast<'_, Solid>,
-        found: &Found,
+        found: &LeastGap,
         least: f64,
         steps: SolidSteps,
     ) -> Option<Clearance<Solid>> {
@@ -135,7 +135,7 @@ impl<'h, 'a> HullTransfer<'h, 'a> {
     /// point may lie below it, or overhang the facets that contain it.
     fn new(solids: &'h Cast<'a, Solid>, hulls: &'h Hulls<'a>) -> Option<Self> {
         let setting = &solids.setting;
-        let noise = setting.noise().point();
+        let noise = setting.noise().point_error();
         let is_axis_aligned =
             permutes_axes(setting.moving_matrix) && permutes_axes(setting.fixed_matrix);
         let tolerance =
@@ -251,10 +251,10 @@ impl<'h, 'a> HullTransfer<'h, 'a> {
                 SolidSteps::default(),
             ),
         };
-        let points = contact.points(&self.hulls.cast);
+        let points = contact.witness_points(&self.hulls.cast);
         let contact = SolidContact {
             translation,
-            shrunk_distance,
+            offset_distance: shrunk_distance,
             normal,
             point_on_moving: points.on_moving,
             point_on_fixed: points.on_fixed,
@@ -281,10 +281,10 @@ impl<'h, 'a> HullTransfer<'h, 'a> {
         let displacement = |k: usize| {
             let TransferSide { surface: Surface { solid, body }, matrix, amount, .. } =
                 self.sides[k];
-            let field = &solid.shrinking().field;
+            let field = &solid.offset_field().displacements;
             let terms = proof.pairs.iter().zip(proof.weights);
             let mean =
-                terms.map(|(pair, w)| field[body.solid_vertex(pair.numbers()[k]) as usize] * w);
+                terms.map(|(pair, w)| field[body.solid_vertex(pair.indices()[k]) as usize] * w);
             matrix * (mean.sum::<DVec3>() * amount)
         };
         displacement(1) - displacement(0)
@@ -293,7 +293,7 @@ impl<'h, 'a> HullTransfer<'h, 'a> {
     /// Returns the contact point on each body, with its normal.
     fn contact_points(&self, contact: &Contact) -> [SurfacePoint; 2] {
         let Certificate { pairs, weights, .. } = &contact.certificate;
-        let points = self.hulls.cast.setting.weighted(pairs, weights);
+        let points = self.hulls.cast.setting.weighted_points(pairs, weights);
         [(0, contact.normal), (1, -contact.normal)].map(|(k, outward)| SurfacePoint {
             position: points[k],
             outward: self.sides[k].matrix.transpose() * outward,
@@ -335,7 +335,7 @@ impl PiercedTriangle {
     /// Computes the triangle of a contact; `None` if it is narrow or the contact plane is steep.
     fn new(cast: &Cast, contact: &Contact, noise: f64) -> Option<Self> {
         let (proof, unit) = (&contact.certificate, cast.setting.unit);
-        let [a, b, c] = proof.pairs.each_ref().map(|pair| cast.setting.difference(*pair));
+        let [a, b, c] = proof.pairs.each_ref().map(|pair| cast.setting.difference_point(*pair));
         let [u, v] = [b - a, c - a];
         let sides = [u, v, c - b].map(DVec3::length_squared);
         let longest = sides.into_iter().fold(0.0, f64::max).sqrt();
@@ -371,7 +371,7 @@ enum HullFeature {
 impl HullFeature {
     /// Returns the feature of the moving (`k = 0`) or the fixed body in the vertex pairs of a certificate.
     fn from_pairs(pairs: &[VertexPair; 3], k: usize) -> Self {
-        let [a, b, c] = pairs.each_ref().map(|pair| pair.numbers()[k]);
+        let [a, b, c] = pairs.each_ref().map(|pair| pair.indices()[k]);
         match (a == b, b == c, a == c) {
             (true, true, _) => Self::Vertex(a),
             (true, false, _) | (_, false, true) => Self::Edge([b, c]),
@@ -384,7 +384,7 @@ impl HullFeature {
 impl TransferSide<'_> {
     /// Names the feature of the solid at a point of a triangle, by the numbers of the input.
     fn contact_feature(&self, triangle: u32, point: &SurfacePoint, noise: f64) -> Feature {
-        feature(self.surface.solid, triangle, (point.position, point.outward), noise)
+        feature_at(self.surface.solid, triangle, (point.position, point.outward), noise)
     }
 
     /// Finds a facet that faces the other body, nominal and offset, and clearly contains a point, or has it on an

@@ -1,23 +1,23 @@
 //! The gap of two facets with exact signs; its values are exact except for their last roundings.
 //!
-//! Each gap is a quotient ([`Above`]): six times the volume of a tetrahedron over that of a tetrahedron whose last edge
-//! is the direction. Double-double numbers are tried first, then small integers, then large ones, whose size suffices
-//! for all inputs.
+//! Each gap ([`Above`]) is a quotient of two determinants, in multiples of the direction. The numerator is six times
+//! the volume of a tetrahedron of corners. In the denominator the direction replaces one of its edges. Double-double
+//! numbers are tried first, then small integers, then large ones, whose size suffices for all inputs.
 
 use std::cmp::Ordering;
 
 use super::facet::{Facet, Turns, sides_cross};
 use super::{Gap, Meeting};
-use crate::solve::scene::{Corner, ExactPoint, Scene};
-use colltrans_kernel::fine::{self, Fine, Way};
-use colltrans_kernel::integer::{Integer, LARGE, SMALL, determinant, difference};
+use crate::solve::scene::{ExactPoint, PairFrame, PlacedVertex};
+use colltrans_kernel::extended::{self, ExtendedDisplacement, ExtendedPoint};
+use colltrans_kernel::integer::{Integer, LARGE_LIMBS, SMALL_LIMBS, determinant, difference};
 
 /// Maximum error, in noises, of a gap that counts as exact except for its last roundings.
 const UNSEEN: f64 = f64::EPSILON / 4.0;
 
-/// Computes the gap from exact signs at those corners of the common shadow for which `keep` returns true.
+/// Computes the gap from exact signs at those corners of the common shadow for which `min_gap` returns true.
 pub(super) fn exact_range(
-    scene: &Scene,
+    scene: &PairFrame,
     f: &Facet,
     g: &Facet,
     of_f: &Turns,
@@ -34,8 +34,8 @@ pub(super) fn exact_range(
     for at in corners {
         let above = fine
             .height_at(at)
-            .or_else(|| above_at::<SMALL>(scene, f, g, at))
-            .or_else(|| above_at::<LARGE>(scene, f, g, at));
+            .or_else(|| above_at::<SMALL_LIMBS>(scene, f, g, at))
+            .or_else(|| above_at::<LARGE_LIMBS>(scene, f, g, at));
         // Large integers never overflow, so the alternative is not used.
         gap.add_corner(scene, above.unwrap_or(Above::LEVEL), at);
     }
@@ -65,8 +65,8 @@ pub(crate) const NO_GAP: Gap = Gap {
 
 /// Computes the height of the second facet above the first at a corner of the common shadow; `None` if a number does
 /// not fit.
-fn above_at<const N: usize>(scene: &Scene, f: &Facet, g: &Facet, at: Meeting) -> Option<Above> {
-    let direction = scene.setting.direction.to_array().map(Integer::<N>::number);
+fn above_at<const N: usize>(scene: &PairFrame, f: &Facet, g: &Facet, at: Meeting) -> Option<Above> {
+    let direction = scene.setting.direction.to_array().map(Integer::<N>::exact_number);
     match at {
         Meeting::Corner(k) => {
             Some(above_facet(scene, &direction, g, &f.corners[usize::from(k)])?.reversed())
@@ -81,16 +81,16 @@ fn above_at<const N: usize>(scene: &Scene, f: &Facet, g: &Facet, at: Meeting) ->
 
 /// Two facets in double-double precision.
 struct FinePair<'s, 'a> {
-    scene: &'s Scene<'a>,
+    scene: &'s PairFrame<'a>,
     /// Corners of both facets.
-    points: [[Fine; 3]; 2],
-    direction: Fine,
+    points: [[ExtendedPoint; 3]; 2],
+    direction: ExtendedPoint,
 }
 
 impl<'s, 'a> FinePair<'s, 'a> {
-    fn new(scene: &'s Scene<'a>, f: &Facet, g: &Facet) -> Self {
-        let points = [f, g].map(|facet| facet.corners.map(|c| c.fine(scene)));
-        let direction = Fine::exactly(scene.setting.direction);
+    fn new(scene: &'s PairFrame<'a>, f: &Facet, g: &Facet) -> Self {
+        let points = [f, g].map(|facet| facet.corners.map(|c| c.double_double_position(scene)));
+        let direction = ExtendedPoint::from_exact(scene.setting.direction);
         Self { scene, points, direction }
     }
 
@@ -108,7 +108,7 @@ impl<'s, 'a> FinePair<'s, 'a> {
     /// suffice.
     fn above_facet(&self, facet: usize, corner: usize) -> Option<Above> {
         let [a, b, c] = &self.points[facet];
-        let [x, y, z] = [b, c, &self.points[1 - facet][corner]].map(|q| a.to(q));
+        let [x, y, z] = [b, c, &self.points[1 - facet][corner]].map(|q| a.displacement_to(q));
         self.volume_over_area([x, y, z], [x, y])
     }
 
@@ -117,17 +117,22 @@ impl<'s, 'a> FinePair<'s, 'a> {
     fn above_side(&self, k: usize, j: usize) -> Option<Above> {
         let [p, q] = &self.points;
         let (c, e) = (&q[j], &q[(j + 1) % 3]);
-        let [x, y, z] = [&p[(k + 1) % 3], c, e].map(|r| p[k].to(r));
-        Some(self.volume_over_area([x, y, z], [x, c.to(e)])?.reversed())
+        let [x, y, z] = [&p[(k + 1) % 3], c, e].map(|r| p[k].displacement_to(r));
+        Some(self.volume_over_area([x, y, z], [x, c.displacement_to(e)])?.reversed())
     }
 
     /// Returns a volume over an area; `None` if the precision does not suffice.
-    fn volume_over_area(&self, volume: [Way; 3], [x, y]: [Way; 2]) -> Option<Above> {
-        let over = fine::determinant(volume);
+    fn volume_over_area(
+        &self,
+        volume: [ExtendedDisplacement; 3],
+        [x, y]: [ExtendedDisplacement; 2],
+    ) -> Option<Above> {
+        let over = extended::determinant(volume);
         let Some(sign) = over.sign() else {
-            return fine::tracked_determinant_sign(volume)?.is_eq().then_some(Above::LEVEL);
+            return extended::tracked_determinant_sign(volume)?.is_eq().then_some(Above::LEVEL);
         };
-        let under = fine::determinant([x, y, Fine::ORIGIN.to(&self.direction)]);
+        let under =
+            extended::determinant([x, y, ExtendedPoint::ORIGIN.displacement_to(&self.direction)]);
         let sign = if under.sign()?.is_lt() { sign.reverse() } else { sign };
         let slack = UNSEEN * self.scene.noise / self.scene.setting.length;
         let value = over.ratio(&under, slack)?;
@@ -138,10 +143,10 @@ impl<'s, 'a> FinePair<'s, 'a> {
 /// Computes the height of a corner above the plane of a facet of either orientation, as a multiple of the direction;
 /// `None` if a number does not fit.
 fn above_facet<const N: usize>(
-    scene: &Scene,
+    scene: &PairFrame,
     direction: &[Integer<N>; 3],
     facet: &Facet,
-    corner: &Corner,
+    corner: &PlacedVertex,
 ) -> Option<Above> {
     let [a, b, c] = facet.corners.each_ref();
     let [x, y, z] = scene.spans_wide(a, [b, c, corner]);
@@ -150,10 +155,10 @@ fn above_facet<const N: usize>(
 
 /// Computes the height of side `c e` above side `a b` where their shadows cross; `None` if a number does not fit.
 fn above_side<const N: usize>(
-    scene: &Scene,
+    scene: &PairFrame,
     direction: &[Integer<N>; 3],
-    [a, b]: [&Corner; 2],
-    [c, e]: [&Corner; 2],
+    [a, b]: [&PlacedVertex; 2],
+    [c, e]: [&PlacedVertex; 2],
 ) -> Option<Above> {
     let [x, y, z] = scene.spans_wide(a, [b, c, e]);
     let plane = determinant(&x, &difference(&z, &y), direction);
@@ -161,18 +166,22 @@ fn above_side<const N: usize>(
 }
 
 /// Computes the height of a corner above a facet whose shadow contains that of the corner.
-pub(crate) fn over_facet(scene: &Scene, facet: &Facet, corner: &Corner) -> Above {
+pub(crate) fn over_facet(scene: &PairFrame, facet: &Facet, corner: &PlacedVertex) -> Above {
     let d = scene.setting.direction.to_array();
-    let small = above_facet::<SMALL>(scene, &d.map(Integer::number), facet, corner);
-    let large = || above_facet::<LARGE>(scene, &d.map(Integer::number), facet, corner);
+    let small = above_facet::<SMALL_LIMBS>(scene, &d.map(Integer::exact_number), facet, corner);
+    let large = || above_facet::<LARGE_LIMBS>(scene, &d.map(Integer::exact_number), facet, corner);
     small.or_else(large).unwrap_or(Above::LEVEL)
 }
 
 /// Computes the height of the side `above` over `side` where their shadows cross.
-pub(crate) fn over_side(scene: &Scene, side: [&Corner; 2], above: [&Corner; 2]) -> Above {
+pub(crate) fn over_side(
+    scene: &PairFrame,
+    side: [&PlacedVertex; 2],
+    above: [&PlacedVertex; 2],
+) -> Above {
     let d = scene.setting.direction.to_array();
-    let small = above_side::<SMALL>(scene, &d.map(Integer::number), side, above);
-    let large = || above_side::<LARGE>(scene, &d.map(Integer::number), side, above);
+    let small = above_side::<SMALL_LIMBS>(scene, &d.map(Integer::exact_number), side, above);
+    let large = || above_side::<LARGE_LIMBS>(scene, &d.map(Integer::exact_number), side, above);
     small.or_else(large).unwrap_or(Above::LEVEL)
 }
 
@@ -203,7 +212,7 @@ impl Above {
 
 impl Gap {
     /// Adds a corner of the common shadow. `above` is a multiple of the direction.
-    pub(crate) fn add_corner(&mut self, scene: &Scene, above: Above, at: Meeting) {
+    pub(crate) fn add_corner(&mut self, scene: &PairFrame, above: Above, at: Meeting) {
         let Above { sign, value } = above;
         let value = if sign == Ordering::Equal { 0.0 } else { value * scene.setting.length };
         if value < self.least {

@@ -7,10 +7,10 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::super::scene::{CachedCorner, Corner, Scene, Side};
+use super::super::scene::{CachedCorner, PairFrame, PlacedBody, PlacedVertex};
 use super::super::sign::rough_turn;
 use crate::body::Solid;
-use crate::body::edges::NONE;
+use crate::body::edges::NO_NEIGHBOUR;
 use colltrans_convex::body::Aabb;
 
 /// Cosine between two normals below which a facet is folded back onto its neighbour.
@@ -20,7 +20,7 @@ const FOLDED: f64 = -0.999;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Facet {
     pub(crate) triangle: u32,
-    pub(crate) corners: [Corner; 3],
+    pub(crate) corners: [PlacedVertex; 3],
     pub(crate) bounds: Aabb,
     /// The plane of the facet.
     slope: Slope,
@@ -30,7 +30,7 @@ impl Facet {
     /// Builds a facet if it is a front (`Greater`) or back (`Less`) facet of its body; `None` otherwise. A facet of an
     /// open shell is both.
     pub(crate) fn facing(
-        scene: &Scene,
+        scene: &PairFrame,
         moving: bool,
         triangle: usize,
         wanted: Ordering,
@@ -46,14 +46,14 @@ impl Facet {
             return None;
         }
         let places = corners.map(|c| c.at);
-        let (bounds, slope) = (Aabb::of_triangle(places), Slope::new(scene, places));
+        let (bounds, slope) = (Aabb::from_triangle(places), Slope::new(scene, places));
         Some(Self { triangle: triangle as u32, corners, bounds, slope })
     }
 
     /// Returns a lower bound on the distance, along the direction, of all corners of another facet below the plane
     /// (`sign` 1) or above it (-1).
     pub(super) fn least_off(&self, other: &Self, sign: f64) -> f64 {
-        let off = |c: &Corner| self.height_above(c.at);
+        let off = |c: &PlacedVertex| self.height_above(c.at);
         other
             .corners
             .iter()
@@ -74,7 +74,7 @@ impl Facet {
         corners.all(|corner| corner.exact && corner.at.z == height)
     }
 
-    pub(crate) fn side_ends(&self, k: usize) -> [&Corner; 2] {
+    pub(crate) fn side_ends(&self, k: usize) -> [&PlacedVertex; 2] {
         [&self.corners[k], &self.corners[(k + 1) % 3]]
     }
 }
@@ -86,13 +86,17 @@ fn is_thin(solid: &Solid, triangle: usize) -> bool {
         (b - a).cross(c - a).normalize_or_zero()
     };
     let own = normal(triangle);
-    let folded = |n: &u32| *n != NONE && normal(*n as usize).dot(own) < FOLDED;
+    let folded = |n: &u32| *n != NO_NEIGHBOUR && normal(*n as usize).dot(own) < FOLDED;
     solid.is_open(triangle) || solid.neighbours()[triangle].iter().any(folded)
 }
 
 /// Returns the corners of a triangle, in the order in which its shadow is counter-clockwise if it has an area, and the
 /// orientation of the original order.
-pub(crate) fn listed(scene: &Scene, side: &Side, triangle: usize) -> ([Corner; 3], Ordering) {
+pub(crate) fn listed(
+    scene: &PairFrame,
+    side: &PlacedBody,
+    triangle: usize,
+) -> ([PlacedVertex; 3], Ordering) {
     let mut corners = side.corners(triangle);
     let turn = scene.turn(&corners[0], &corners[1], &corners[2]);
     if turn == Ordering::Less {
@@ -113,7 +117,7 @@ struct Slope {
 }
 
 impl Slope {
-    fn new(scene: &Scene, [a, b, c]: [DVec3; 3]) -> Self {
+    fn new(scene: &PairFrame, [a, b, c]: [DVec3; 3]) -> Self {
         // The two shorter sides determine the plane best.
         let sides = [b - a, c - b, a - c];
         let lengths = sides.map(DVec3::length_squared);
@@ -162,14 +166,14 @@ pub(super) struct Turns(pub(super) [[Turn; 3]; 3]);
 
 impl Turns {
     /// Computes all orientations with exact signs.
-    pub(super) fn with_exact_signs(scene: &Scene, sides: &Facet, corners: &Facet) -> Self {
+    pub(super) fn with_exact_signs(scene: &PairFrame, sides: &Facet, corners: &Facet) -> Self {
         let mut turns = Self([0, 1, 2].map(|k| Self::turns_of_side(scene, sides, k, corners)));
         turns.resolve_signs(scene, sides, corners);
         turns
     }
 
     /// Computes all rounded orientations; `None` if all corners are certainly on the outer side of a side.
-    pub(super) fn unless_apart(scene: &Scene, sides: &Facet, corners: &Facet) -> Option<Self> {
+    pub(super) fn unless_apart(scene: &PairFrame, sides: &Facet, corners: &Facet) -> Option<Self> {
         let mut turns = [[Turn { value: 0.0, error: 0.0, sign: Ordering::Equal }; 3]; 3];
         for (k, row) in turns.iter_mut().enumerate() {
             *row = Self::turns_of_side(scene, sides, k, corners);
@@ -181,7 +185,7 @@ impl Turns {
     }
 
     /// Computes the rounded orientations of side `k`.
-    fn turns_of_side(scene: &Scene, sides: &Facet, k: usize, corners: &Facet) -> [Turn; 3] {
+    fn turns_of_side(scene: &PairFrame, sides: &Facet, k: usize, corners: &Facet) -> [Turn; 3] {
         let (a, b) = (sides.corners[k].at, sides.corners[(k + 1) % 3].at);
         corners.corners.each_ref().map(|corner| {
             let (value, error) = rough_turn(scene, a, b, corner.at);
@@ -191,7 +195,7 @@ impl Turns {
     }
 
     /// Makes all signs exact.
-    pub(super) fn resolve_signs(&mut self, scene: &Scene, sides: &Facet, corners: &Facet) {
+    pub(super) fn resolve_signs(&mut self, scene: &PairFrame, sides: &Facet, corners: &Facet) {
         if self.are_certain() {
             return;
         }
@@ -245,7 +249,7 @@ pub(super) fn sides_cross(of_f: &Turns, of_g: &Turns, [k, j]: [usize; 2]) -> boo
 }
 
 /// Checks exactly whether no corner of the other facet is on the inner side of side `k`.
-pub(super) fn side_separates(scene: &Scene, facet: &Facet, k: usize, other: &Facet) -> bool {
+pub(super) fn side_separates(scene: &PairFrame, facet: &Facet, k: usize, other: &Facet) -> bool {
     let [a, b] = facet.side_ends(k);
     other.corners.iter().all(|c| scene.turn(a, b, c) != Ordering::Greater)
 }

@@ -9,20 +9,21 @@
 //! - The pair *counts* if the largest gap is positive, or the gap is zero over the whole common shadow.
 //! - All decisions are exact. [`rounded`] gaps are used where their error bounds permit. Otherwise [`exact`] computes
 //!   the signs of `outside(g, f_i)`, `outside(f, g_j)`, and `-outside(p, q, r, s) turn(p, q, s)` for side `p q` of `f`
-//!   under side `r s` of `g`. [`facet`] has facets and orientations of their sides, [`keep`] facets with a minimum gap.
+//!   under side `r s` of `g`. [`facet`] defines facets and the orientations of their sides. [`min_gap`] computes the gaps
+//!   of pairs with a minimum gap.
 
 mod exact;
 mod facet;
-mod keep;
+mod min_gap;
 mod rounded;
 
 use std::cmp::Ordering;
 
 pub(crate) use exact::{Above, NO_GAP, over_facet, over_side};
 pub(crate) use facet::{Facet, listed};
-pub(crate) use keep::{FacetDifference, nearest_after};
+pub(crate) use min_gap::{FacetDifference, nearest_after};
 
-use super::scene::Scene;
+use super::scene::PairFrame;
 use exact::exact_range;
 use facet::{Turns, may_cross, side_separates};
 use rounded::{Rounded, crossing_gap, each_gap, rounded_range};
@@ -56,7 +57,8 @@ pub(crate) struct Gap {
     pub(crate) least: f64,
     /// The largest gap, as a length.
     pub(crate) largest: f64,
-    /// Exact signs of the least and the largest gap.
+    /// Signs of the least and the largest gap. They are exact, except in two cases. The sign of a rounded least gap
+    /// that is not certainly positive is `Less` if it is not needed. With a minimum gap both signs are `Greater`.
     pub(crate) signs: [Ordering; 2],
     /// The features at which the gap is least.
     pub(crate) at: Meeting,
@@ -73,7 +75,7 @@ impl Gap {
 
 /// The pairs of facets of interest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Wanted {
+pub(crate) enum GapFilter {
     All,
     /// Pairs whose largest gap is not negative. The sign of the least gap is not needed.
     NotParting,
@@ -84,21 +86,22 @@ pub(crate) enum Wanted {
 /// Computes the gap of two facets; `None` if the interiors of their shadows are disjoint, the pair is not of interest,
 /// or bounds show that the gap is not below `limit`.
 pub(crate) fn facet_gap(
-    scene: &Scene,
+    scene: &PairFrame,
     f: &Facet,
     g: &Facet,
     limit: f64,
-    wanted: Wanted,
+    wanted: GapFilter,
 ) -> Option<Gap> {
     if scene.has_min_gap() {
-        return keep::min_gap_crossing(scene, f, g, limit, wanted);
+        return min_gap::min_gap_crossing(scene, f, g, limit, wanted);
     }
     let noise = 4.0 * scene.noise;
-    let apart = |axis: usize| f.bounds.is_apart(&g.bounds, axis, noise);
+    let apart = |axis: usize| f.bounds.is_separated_along(&g.bounds, axis, noise);
     if apart(0) || apart(1) || g.bounds.low.z - f.bounds.high.z - noise >= limit {
         return None;
     }
-    // The gap is linear over each facet, so nowhere less than at the corners of one.
+    // The gap of the planes is linear. Therefore it is nowhere over the common shadow less than its least value at the
+    // corners of `f`, nor than that at the corners of `g`.
     if f.least_off(g, -1.0).max(g.least_off(f, 1.0)) >= limit {
         return None;
     }
@@ -112,12 +115,12 @@ pub(crate) fn facet_gap(
     of_f.resolve_signs(scene, f, g);
     of_g.resolve_signs(scene, g, f);
     let range = rounded_range(scene, f, g, &of_f, &of_g);
-    // Certain for all corners, so the exact gap of slivers that cross is not needed.
-    let parting = wanted != Wanted::All && range.bound[1] < 0.0;
-    if parting || wanted == Wanted::NotCrossing && range.negative {
+    // The upper bound covers the gaps at all corners of the common shadow. If it is negative, no exact gap is needed.
+    let parting = wanted != GapFilter::All && range.bound[1] < 0.0;
+    if parting || wanted == GapFilter::NotCrossing && range.negative {
         return None;
     }
-    match range.conclude(SHARP * scene.noise, wanted == Wanted::NotCrossing) {
+    match range.conclude(SHARP * scene.noise, wanted == GapFilter::NotCrossing) {
         Rounded::Known(gap) => Some(gap),
         Rounded::Beyond(least) if least >= limit => None,
         Rounded::Beyond(_) => Some(exact_range(scene, f, g, &of_f, &of_g, |_| true)),
@@ -126,7 +129,7 @@ pub(crate) fn facet_gap(
 
 /// Computes the least gap of two facets whose shadows overlap, exact except for its last roundings, and its position.
 /// Corners of the common shadow that rounded gaps exclude are skipped.
-pub(crate) fn least_exactly(scene: &Scene, f: &Facet, g: &Facet) -> (f64, Meeting) {
+pub(crate) fn least_exactly(scene: &PairFrame, f: &Facet, g: &Facet) -> (f64, Meeting) {
     let (of_f, of_g) = (Turns::with_exact_signs(scene, f, g), Turns::with_exact_signs(scene, g, f));
     let mut least = f64::INFINITY;
     each_gap(scene, f, g, &of_f, &of_g, |(value, error), _| least = least.min(value + error));
@@ -139,13 +142,13 @@ pub(crate) fn least_exactly(scene: &Scene, f: &Facet, g: &Facet) -> (f64, Meetin
             count += 1;
         }
     });
-    let keep = |at: Meeting| near[..count].contains(&Some(at));
-    let gap = exact_range(scene, f, g, &of_f, &of_g, keep);
+    let is_listed = |at: Meeting| near[..count].contains(&Some(at));
+    let gap = exact_range(scene, f, g, &of_f, &of_g, is_listed);
     (gap.least, gap.at)
 }
 
 /// Computes the gap of two facets whose shadows overlap, exact except for its last roundings.
-pub(crate) fn exact_facet_gap(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
+pub(crate) fn exact_facet_gap(scene: &PairFrame, f: &Facet, g: &Facet) -> Gap {
     let (of_f, of_g) = (Turns::with_exact_signs(scene, f, g), Turns::with_exact_signs(scene, g, f));
     exact_range(scene, f, g, &of_f, &of_g, |_| true)
 }
@@ -158,7 +161,7 @@ pub(crate) struct Opposed {
 
 impl Opposed {
     /// Builds the pair of two triangles; `None` if they do not face each other.
-    pub(crate) fn new(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<Self> {
+    pub(crate) fn new(scene: &PairFrame, [moving, fixed]: [u32; 2]) -> Option<Self> {
         let f = Facet::facing(scene, true, moving as usize, Ordering::Greater)?;
         let g = Facet::facing(scene, false, fixed as usize, Ordering::Less)?;
         Some(Self { f, g })
@@ -166,10 +169,10 @@ impl Opposed {
 
     /// Computes the least gap and its error if the facets certainly block each other. Returns `None` also if only large
     /// integers could decide this, because they would take longer than a search.
-    pub(crate) fn least_gap(&self, scene: &Scene) -> Option<(f64, f64)> {
+    pub(crate) fn least_gap(&self, scene: &PairFrame) -> Option<(f64, f64)> {
         let Self { f, g } = self;
         if scene.has_min_gap() {
-            let gap = keep::min_gap_crossing(scene, f, g, f64::INFINITY, Wanted::All)?;
+            let gap = min_gap::min_gap_crossing(scene, f, g, f64::INFINITY, GapFilter::All)?;
             return Some((gap.least, gap.error));
         }
         let mut of_f = Turns::unless_apart(scene, f, g)?;
@@ -197,13 +200,14 @@ impl Opposed {
 
     /// Returns a lower bound of the gap in all cases that rounding errors leave open; infinity if the interiors of the
     /// shadows certainly do not overlap.
-    pub(crate) fn least_in_doubt(&self, scene: &Scene) -> f64 {
+    pub(crate) fn least_in_doubt(&self, scene: &PairFrame) -> f64 {
         let Self { f, g } = self;
         let of_f = Turns::unless_apart(scene, f, g);
         let of_g = Turns::unless_apart(scene, g, f);
         let (Some(of_f), Some(of_g)) = (of_f, of_g) else { return f64::INFINITY };
-        // The gap is linear over each facet, so nowhere less than at the corners of one. It is least at a corner of the
-        // common shadow, which is one of the possible corners.
+        // The gap of the planes is linear. Therefore it is nowhere over the common shadow less than its least value at
+        // the corners of `f`, nor than that at the corners of `g`. It is least at a corner of the common shadow, which
+        // is one of the possible corners.
         let anywhere = f.least_off(g, -1.0).max(g.least_off(f, 1.0));
         let mut least = f64::INFINITY;
         let mut add = |(value, error): (f64, f64)| least = least.min(value - error);
@@ -223,7 +227,7 @@ impl Opposed {
     }
 
     /// Computes the gap, exact except for its last roundings; `None` if the pair is not wanted.
-    pub(crate) fn exact_gap(&self, scene: &Scene, wanted: Wanted) -> Option<Gap> {
+    pub(crate) fn exact_gap(&self, scene: &PairFrame, wanted: GapFilter) -> Option<Gap> {
         let found = facet_gap(scene, &self.f, &self.g, f64::INFINITY, wanted)?;
         // Errors of 0 are exact already. Gaps of pairs with a minimum gap are sharp.
         let sharp = found.error == 0.0 || found.at == Meeting::Near;
@@ -272,11 +276,11 @@ mod tests {
             let turned = |t| Pose::new(q, q * t).expect("a rotation");
             let cast = Cast::new(a.at(turned(DVec3::ZERO)), b.at(turned(t)), q * d).expect("a query");
             let cast = cast.with_tolerance(0.0).expect("a tolerance");
-            let scene = cast.asked();
+            let scene = cast.query_scene();
             let f = Facet::facing(&scene, true, 0, Ordering::Greater);
             let g = Facet::facing(&scene, false, 0, Ordering::Less);
             if let (Some(f), Some(g)) = (f, g)
-                && facet_gap(&scene, &f, &g, f64::INFINITY, Wanted::All).is_some()
+                && facet_gap(&scene, &f, &g, f64::INFINITY, GapFilter::All).is_some()
             {
                 let least = exact_facet_gap(&scene, &f, &g).least;
                 let opposed = Opposed::new(&scene, [0, 0]).expect("the facets face each other");

@@ -5,11 +5,12 @@ use std::cmp::Ordering;
 
 use super::facet::{Facet, Turn, Turns, sides_cross};
 use super::{Gap, Meeting};
-use crate::solve::scene::Scene;
+use crate::solve::scene::PairFrame;
 
 /// A gap from rounded coordinates.
 pub(super) enum Rounded {
-    /// The errors are small and the signs are certain.
+    /// The errors are small and the signs are certain. Only the sign of a least gap that is not certainly positive is
+    /// `Less` without proof, if it is not needed.
     Known(Gap),
     /// The least gap is certainly not smaller than this value.
     Beyond(f64),
@@ -63,7 +64,7 @@ impl Range {
 }
 
 pub(super) fn rounded_range(
-    scene: &Scene,
+    scene: &PairFrame,
     f: &Facet,
     g: &Facet,
     of_f: &Turns,
@@ -85,7 +86,7 @@ pub(super) fn rounded_range(
 /// Calls `add` with the rounded gap at each corner of the common shadow, a bound on its error, and the features that
 /// meet there.
 pub(super) fn each_gap(
-    scene: &Scene,
+    scene: &PairFrame,
     f: &Facet,
     g: &Facet,
     of_f: &Turns,
@@ -113,7 +114,7 @@ pub(super) fn each_gap(
 
 /// Computes the gap where side `k` of `f` crosses side `j` of `g`, and a bound on its error.
 pub(super) fn crossing_gap(
-    scene: &Scene,
+    scene: &PairFrame,
     [f, g]: [&Facet; 2],
     [k, j]: [usize; 2],
     of_f: &Turns,

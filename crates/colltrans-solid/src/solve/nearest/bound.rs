@@ -2,8 +2,9 @@
 //!
 //! - Any unit vector `n` gives a bound for two convex sets: the least coordinate of one along `n` minus the largest of
 //!   the other. For boxes, three gaps along orthogonal vectors give a better one: the length of their vector.
-//! - Tried are the axes of the fixed body, those of the moving one, the axes of the nodes' slabs, and the direction of
-//!   the longer of the two gap vectors along the axes of a body. Cuts and slabs make a node smaller than its box.
+//! - Bounds use the axes of the fixed body, those of the moving one, the axes of the nodes' slabs, and the direction of
+//!   the longer of two vectors: the gaps along the axes of the fixed body, and those along the axes of the moving one.
+//!   Cuts and slabs make a node smaller than its box.
 //! - A pose's matrix `R` is a rotation only up to rounding. A coordinate along the axis `n` of a slab in the body frame
 //!   is one along `R^-T n` in the setting frame, exactly. The three gaps along the columns of `R` are those of `R^T v`,
 //!   which is at most the norm of `R` times as long as `v`.
@@ -12,9 +13,9 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::body::cuts::{Depths, Parts, depths};
+use crate::body::cuts::{Depths, NormalDecomposition, depth_table};
 use crate::body::tree::Node;
-use crate::solve::scene::{Scene, Side};
+use crate::solve::scene::{PairFrame, PlacedBody};
 use colltrans_kernel::pose::rotation_defect;
 
 use super::triangle::unit_vector;
@@ -40,7 +41,8 @@ pub enum Apart {
     SlabOfMoving,
     /// The slab of the fixed body's node.
     SlabOfFixed,
-    /// A plane orthogonal to the shortest vector between their boxes.
+    /// A plane orthogonal to the vector of the gaps of their boxes along the axes of one body. Of the vectors for both
+    /// bodies it is the longer one.
     Way,
     /// Both nodes are leaves, and each pair of their facets was compared individually.
     Examined,
@@ -68,13 +70,13 @@ struct Axis {
     local: DVec3,
     offset: f64,
     /// The cuts along the axis and against it.
-    parts: [Parts; 2],
+    parts: [NormalDecomposition; 2],
 }
 
 impl Axis {
-    fn new(side: &Side, axis: DVec3) -> Self {
+    fn new(side: &PlacedBody, axis: DVec3) -> Self {
         let local = side.matrix.transpose() * axis;
-        let parts = [Parts::new(local), Parts::new(-local)];
+        let parts = [NormalDecomposition::new(local), NormalDecomposition::new(-local)];
         Self { local, offset: axis.dot(side.offset[0]), parts }
     }
 
@@ -82,13 +84,14 @@ impl Axis {
     #[inline]
     fn range_along(&self, middle: DVec3, half: DVec3, depths: &Depths) -> [f64; 2] {
         let (at, width) = (self.local.dot(middle) + self.offset, self.local.abs().dot(half));
-        let [high, low] = [self.parts[0].gain(depths), self.parts[1].gain(depths)];
+        let [high, low] =
+            [self.parts[0].support_reduction(depths), self.parts[1].support_reduction(depths)];
         [at - width + low, at + width - high]
     }
 }
 
 impl Axes {
-    pub(crate) fn new(scene: &Scene) -> Self {
+    pub(crate) fn new(scene: &PairFrame) -> Self {
         let frames = [scene.fixed.matrix, scene.moving.matrix];
         let sides = [&scene.moving, &scene.fixed];
         let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis];
@@ -119,12 +122,12 @@ pub(super) struct NodeExtents {
 }
 
 impl NodeExtents {
-    pub(super) fn new(axes: &Axes, side: &Side, at: u32) -> Self {
+    pub(super) fn new(axes: &Axes, side: &PlacedBody, at: u32) -> Self {
         let node = &side.solid.nodes()[at as usize];
-        let (middle, size) = (node.bounds.center(), node.bounds.size());
+        let (middle, size) = (node.bounds.center(), node.bounds.side_lengths());
         let half = size * 0.5;
         let k = usize::from(!side.moving);
-        let depths = depths(&node.cuts, size, 0.0);
+        let depths = depth_table(&node.cuts, size, 0.0);
         let ranges = axes.seen[k].map(|axis| axis.range_along(middle, half, &depths));
         let ends = |frame: usize, end: usize| {
             DVec3::from_array([0, 1, 2].map(|i| ranges[3 * frame + i][end]))
@@ -144,7 +147,7 @@ impl NodeExtents {
     }
 
     /// Returns a lower bound of `n.x` over the node for a unit vector `n`.
-    fn least_along(&self, side: &Side, n: DVec3) -> f64 {
+    fn least_along(&self, side: &PlacedBody, n: DVec3) -> f64 {
         let along = self.axis.dot(n);
         let (mut rest, mut by_slab) = (n, 0.0);
         if along.abs() > PARALLEL {
@@ -154,13 +157,17 @@ impl NodeExtents {
         let local = side.matrix.transpose() * rest;
         let middle = local.dot(self.middle) + rest.dot(side.offset[0]);
         let node = &side.solid.nodes()[self.node as usize];
-        let gain = Parts::new(-local).support_reduction_by_cuts(&node.cuts, self.half * 2.0, 0.0);
+        let gain = NormalDecomposition::new(-local).support_reduction_by_cuts(
+            &node.cuts,
+            self.half * 2.0,
+            0.0,
+        );
         by_slab + middle - local.abs().dot(self.half) + gain
     }
 }
 
 /// Returns the slab of a node in the setting frame: its axis and range. The axis is 0 if there is no slab.
-fn slab_in_setting_frame(dual: DMat3, side: &Side, node: &Node) -> (DVec3, [f64; 2]) {
+fn slab_in_setting_frame(dual: DMat3, side: &PlacedBody, node: &Node) -> (DVec3, [f64; 2]) {
     let axis = dual * node.axis;
     let length = axis.length();
     if node.slab[1] == f64::INFINITY || length == 0.0 {
@@ -174,7 +181,7 @@ fn slab_in_setting_frame(dual: DMat3, side: &Side, node: &Node) -> (DVec3, [f64;
 /// A node of the moving body and one of the fixed body.
 #[derive(Clone, Copy)]
 pub(super) struct NodePair<'s, 'a> {
-    pub(super) scene: &'s Scene<'a>,
+    pub(super) scene: &'s PairFrame<'a>,
     pub(super) axes: &'s Axes,
     pub(super) moving: &'s NodeExtents,
     pub(super) fixed: &'s NodeExtents,

@@ -14,12 +14,12 @@ pub mod triangle;
 use glam::DVec3;
 
 use super::overlap::{self, Overlap};
-use super::scene::{Scene, Side};
+use super::scene::{PairFrame, PlacedBody};
 use crate::solve::steps::SolidSteps;
 pub use bound::Apart;
 pub(crate) use bound::Axes;
 use colltrans_convex::body::Feature;
-use search::{Found, facet_corners};
+use search::{NearestFacets, facet_corners};
 use triangle::Nearest;
 
 /// Proof of an upper bound of the distance of two solids.
@@ -64,68 +64,68 @@ pub struct SolidGap {
 
 /// A point of each of two triangles, nearest to the other one.
 #[derive(Debug, Clone, Copy)]
-pub struct Spot {
+pub struct NearestPoints {
     pub triangles: [u32; 2],
     pub nearest: Nearest,
 }
 
-impl Spot {
+impl NearestPoints {
     /// Computes the nearest points of two triangles.
-    pub(crate) fn of(scene: &Scene, triangles: [u32; 2]) -> Self {
+    pub(crate) fn from_triangles(scene: &PairFrame, triangles: [u32; 2]) -> Self {
         let [f, g] = both_corners(scene, triangles);
-        Self { triangles, nearest: triangle::nearest(&f, &g, scene.noise) }
+        Self { triangles, nearest: triangle::nearest_points(&f, &g, scene.noise) }
     }
 
-    pub(crate) fn near(&self, scene: &Scene) -> SolidNear {
+    pub(crate) fn to_upper_bound(&self, scene: &PairFrame) -> SolidNear {
         let Nearest { weights, length, .. } = self.nearest;
-        let distance = length + triangle::LENGTH * scene.noise;
+        let distance = length + triangle::LENGTH_NOISES * scene.noise;
         let weights = weights.map(|w| w.to_array());
         SolidNear::Points { triangles: self.triangles, weights, distance }
     }
 
     /// Returns the two points in the setting frame.
     #[inline]
-    pub fn points(&self, scene: &Scene) -> [DVec3; 2] {
-        points_of(scene, self.triangles, self.nearest.weights)
+    pub fn witness_points(&self, scene: &PairFrame) -> [DVec3; 2] {
+        weighted_points(scene, self.triangles, self.nearest.weights)
     }
 
     /// Returns the features of both bodies at the points.
     #[inline]
-    pub fn features(&self, scene: &Scene) -> [Feature; 2] {
+    pub fn features(&self, scene: &PairFrame) -> [Feature; 2] {
         let sides = [&scene.moving, &scene.fixed];
         [0, 1].map(|k| {
             let (side, triangle) = (sides[k], self.triangles[k]);
             let places = side.solid.triangles()[triangle as usize]
                 .map(|v| side.solid.vertices()[v as usize]);
-            let at = triangle::mean(&places, self.nearest.weights[k]);
-            let slack = 2.0 * side.solid.precision() + scene.noise;
+            let at = triangle::weighted_point(&places, self.nearest.weights[k]);
+            let slack = 2.0 * side.solid.coordinate_precision() + scene.noise;
             let normal = side.matrix.transpose() * self.nearest.normal;
             side.solid.feature_at(triangle, at, normal, slack)
         })
     }
 }
 
-impl From<Found> for Spot {
-    fn from(found: Found) -> Self {
+impl From<NearestFacets> for NearestPoints {
+    fn from(found: NearestFacets) -> Self {
         Self { triangles: found.triangles, nearest: found.nearest }
     }
 }
 
-fn both_corners(scene: &Scene, [s, t]: [u32; 2]) -> [triangle::Corners; 2] {
+fn both_corners(scene: &PairFrame, [s, t]: [u32; 2]) -> [triangle::Corners; 2] {
     [facet_corners(&scene.moving, s as usize), facet_corners(&scene.fixed, t as usize)]
 }
 
 /// Returns the points of two triangles with the given weights, in the setting frame.
 #[inline]
-pub fn points_of(scene: &Scene, triangles: [u32; 2], weights: [DVec3; 2]) -> [DVec3; 2] {
+pub fn weighted_points(scene: &PairFrame, triangles: [u32; 2], weights: [DVec3; 2]) -> [DVec3; 2] {
     let corners = both_corners(scene, triangles);
-    [0, 1].map(|k| triangle::mean(&corners[k], weights[k]))
+    [0, 1].map(|k| triangle::weighted_point(&corners[k], weights[k]))
 }
 
 /// Finds a place where the bodies have a common point, given a lower bound of the distance of their surfaces; `None` if
 /// there is no such place.
 pub(crate) fn find_common_point(
-    scene: &Scene,
+    scene: &PairFrame,
     surfaces: f64,
     steps: &mut SolidSteps,
 ) -> Option<Overlap> {
@@ -133,27 +133,27 @@ pub(crate) fn find_common_point(
 }
 
 /// Returns a common point of both bodies in the setting frame, once for each body, equal within rounding.
-pub(crate) fn shared_points(scene: &Scene, place: Overlap) -> [DVec3; 2] {
-    let corner = |side: &Side, t: u32| [facet_corners(side, t as usize)[0]; 2];
+pub(crate) fn shared_points(scene: &PairFrame, place: Overlap) -> [DVec3; 2] {
+    let corner = |side: &PlacedBody, t: u32| [facet_corners(side, t as usize)[0]; 2];
     match place {
-        Overlap::Facets(s, t) => Spot::of(scene, [s, t]).points(scene),
+        Overlap::Facets(s, t) => NearestPoints::from_triangles(scene, [s, t]).witness_points(scene),
         Overlap::MovingInside(t) => corner(&scene.moving, t),
         Overlap::FixedInside(t) => corner(&scene.fixed, t),
     }
 }
 
-/// Returns an upper bound of the distance of the points with the claimed weights, in world units; `None` if a triangle
-/// does not exist.
+/// Returns an upper bound, in world units, of the distance of a point on each of two triangles, given by weights of
+/// their corners. `None` if a triangle does not exist.
 pub(crate) fn distance_of(
-    scene: &Scene,
+    scene: &PairFrame,
     triangles: [u32; 2],
     weights: [[f64; 3]; 2],
 ) -> Option<f64> {
-    let known = |side: &Side, t: u32| (t as usize) < side.solid.triangles().len();
+    let known = |side: &PlacedBody, t: u32| (t as usize) < side.solid.triangles().len();
     if !known(&scene.moving, triangles[0]) || !known(&scene.fixed, triangles[1]) {
         return None;
     }
     let [f, g] = both_corners(scene, triangles);
-    let length = triangle::length(&f, &g, weights.map(DVec3::from_array));
-    Some(length + triangle::LENGTH * scene.noise)
+    let length = triangle::weighted_distance(&f, &g, weights.map(DVec3::from_array));
+    Some(length + triangle::LENGTH_NOISES * scene.noise)
 }

@@ -8,57 +8,59 @@
 use std::collections::BinaryHeap;
 
 use super::bound::{Apart, Axes, NodeExtents, NodePair};
-use super::triangle::{self, Corners, GAP, Nearest};
-use crate::solve::scene::{Scene, Side};
+use super::triangle::{self, Corners, GAP_NOISES, Nearest};
+use crate::solve::scene::{PairFrame, PlacedBody};
 use crate::solve::steps::SolidSteps;
-use colltrans_kernel::descent::{Entry, Pairs, Seen, best_first, node_to_split, replaced};
-use colltrans_kernel::work;
+use colltrans_kernel::descent::{
+    PairSearch, QueuedPair, VisitedNodes, best_first, node_to_split, pair_with_node,
+};
+use colltrans_kernel::visit_counter;
 
 /// Distance, in noises, of the limit below the least length found.
 const SLACK: f64 = 3.0;
 
 /// The two nearest facets.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Found {
+pub(crate) struct NearestFacets {
     pub(crate) triangles: [u32; 2],
     pub(crate) nearest: Nearest,
 }
 
 /// Conditions under which a search may end early.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Until {
+pub(crate) struct SearchEnd {
     /// Distance from which on pairs are of no interest.
     pub(crate) beyond: f64,
     /// Computed distance up to which a pair is sufficient.
     pub(crate) enough: f64,
 }
 
-impl Until {
+impl SearchEnd {
     /// Searches for the least distance.
     pub(crate) const LEAST: Self = Self { beyond: f64::INFINITY, enough: f64::NEG_INFINITY };
 }
 
 /// Returns the facets of a leaf.
-fn leaf_facets(side: &Side, node: u32) -> impl Iterator<Item = Corners> {
+fn leaf_facets(side: &PlacedBody, node: u32) -> impl Iterator<Item = Corners> {
     side.solid.nodes()[node as usize].facets().map(|t| facet_corners(side, t))
 }
 
 /// Returns the corners of a facet in the setting frame.
-pub(crate) fn facet_corners(side: &Side, triangle: usize) -> Corners {
+pub(crate) fn facet_corners(side: &PlacedBody, triangle: usize) -> Corners {
     let vertices = side.solid.vertices();
     side.solid.triangles()[triangle].map(|v| side.matrix * vertices[v as usize] + side.offset[0])
 }
 
 /// State of a search.
-pub(crate) struct Search<'s, 'a, F: FnMut([u32; 2], Apart)> {
-    scene: &'s Scene<'a>,
+pub(crate) struct DistanceSearch<'s, 'a, F: FnMut([u32; 2], Apart)> {
+    scene: &'s PairFrame<'a>,
     axes: Axes,
     /// The visited nodes of each body, and the facets of their leaves.
-    seen: [Seen<NodeExtents, Corners>; 2],
-    until: Until,
+    seen: [VisitedNodes<NodeExtents, Corners>; 2],
+    until: SearchEnd,
     /// Distance from which on pairs are of no interest now.
     limit: f64,
-    found: Option<Found>,
+    found: Option<NearestFacets>,
     /// Lower bound on the distance of all pairs of facets that were examined.
     examined: f64,
     /// Callback that receives every pair of nodes that is not split, and the reason.
@@ -66,8 +68,8 @@ pub(crate) struct Search<'s, 'a, F: FnMut([u32; 2], Apart)> {
     pub(crate) steps: SolidSteps,
 }
 
-impl<'s, 'a, F: FnMut([u32; 2], Apart)> Search<'s, 'a, F> {
-    pub(crate) fn new(scene: &'s Scene<'a>, until: Until, cut: F) -> Self {
+impl<'s, 'a, F: FnMut([u32; 2], Apart)> DistanceSearch<'s, 'a, F> {
+    pub(crate) fn new(scene: &'s PairFrame<'a>, until: SearchEnd, cut: F) -> Self {
         Self {
             scene,
             axes: Axes::new(scene),
@@ -83,11 +85,11 @@ impl<'s, 'a, F: FnMut([u32; 2], Apart)> Search<'s, 'a, F> {
 
     /// Returns the nearest pair below the limit, if there is one, and a lower bound of the distance of all pairs. The
     /// bound is 0 if a sufficient pair ended the search.
-    pub(crate) fn run(&mut self) -> (Option<Found>, f64) {
-        self.seen[0].start(NodeExtents::new(&self.axes, &self.scene.moving, 0));
-        self.seen[1].start(NodeExtents::new(&self.axes, &self.scene.fixed, 0));
+    pub(crate) fn find_nearest(&mut self) -> (Option<NearestFacets>, f64) {
+        self.seen[0].reset_to_root(NodeExtents::new(&self.axes, &self.scene.moving, 0));
+        self.seen[1].reset_to_root(NodeExtents::new(&self.axes, &self.scene.fixed, 0));
         best_first(self, &mut BinaryHeap::new());
-        let lower = if self.is_enough() { 0.0 } else { self.examined.min(self.limit).max(0.0) };
+        let lower = if self.is_sufficient() { 0.0 } else { self.examined.min(self.limit).max(0.0) };
         (self.found, lower)
     }
 
@@ -100,10 +102,11 @@ impl<'s, 'a, F: FnMut([u32; 2], Apart)> Search<'s, 'a, F> {
         self.steps.leaves += 1;
         let sides = [&self.scene.moving, &self.scene.fixed];
         let triangles = [0, 1].map(|k| sides[k].solid.nodes()[nodes[k] as usize].facets());
-        let held = [0, 1].map(|k| self.seen[k].leaf(views[k], |_| leaf_facets(sides[k], nodes[k])));
+        let held =
+            [0, 1].map(|k| self.seen[k].leaf_items(views[k], |_| leaf_facets(sides[k], nodes[k])));
         for (s, i) in triangles[0].clone().zip(held[0].clone()) {
             for (t, j) in triangles[1].clone().zip(held[1].clone()) {
-                let (f, g) = (*self.seen[0].item(i), *self.seen[1].item(j));
+                let (f, g) = (*self.seen[0].cached_item(i), *self.seen[1].cached_item(j));
                 self.compare_facets([s as u32, t as u32], &f, &g);
             }
         }
@@ -114,25 +117,25 @@ impl<'s, 'a, F: FnMut([u32; 2], Apart)> Search<'s, 'a, F> {
         let noise = self.scene.noise;
         // A plane with the normal of the best pair excludes most pairs near it.
         if let Some(best) = &self.found
-            && triangle::gap_along(f, g, best.nearest.normal) - GAP * noise >= self.limit
+            && triangle::gap_along(f, g, best.nearest.normal) - GAP_NOISES * noise >= self.limit
         {
             return;
         }
         let Some(nearest) = triangle::nearest_below(f, g, self.limit, noise) else { return };
-        self.examined = self.examined.min(nearest.gap - GAP * noise);
+        self.examined = self.examined.min(nearest.gap - GAP_NOISES * noise);
         if self.found.is_none_or(|found| nearest.length < found.nearest.length) {
-            self.found = Some(Found { triangles, nearest });
+            self.found = Some(NearestFacets { triangles, nearest });
             self.limit = self.limit.min(nearest.length - SLACK * noise);
         }
     }
 }
 
-impl<F: FnMut([u32; 2], Apart)> Pairs for Search<'_, '_, F> {
+impl<F: FnMut([u32; 2], Apart)> PairSearch for DistanceSearch<'_, '_, F> {
     type Reason = Apart;
-    const FIRST_OF_EQUALS: bool = true;
+    const PREFERS_FIRST_OF_EQUALS: bool = true;
 
     #[inline]
-    fn limit(&self) -> f64 {
+    fn bound_limit(&self) -> f64 {
         self.limit
     }
 
@@ -142,13 +145,13 @@ impl<F: FnMut([u32; 2], Apart)> Pairs for Search<'_, '_, F> {
     }
 
     #[inline]
-    fn is_enough(&self) -> bool {
+    fn is_sufficient(&self) -> bool {
         self.found.is_some_and(|found| found.nearest.length <= self.until.enough)
     }
 
     #[inline]
-    fn bound(&mut self, [i, j]: [u32; 2]) -> Option<(f64, Apart)> {
-        work::count(1);
+    fn lower_bound(&mut self, [i, j]: [u32; 2]) -> Option<(f64, Apart)> {
+        visit_counter::count_visits(1);
         self.steps.nodes += 1;
         let (moving, fixed) = (self.seen[0].view(i), self.seen[1].view(j));
         let pair = NodePair { scene: self.scene, axes: &self.axes, moving, fixed };
@@ -161,7 +164,7 @@ impl<F: FnMut([u32; 2], Apart)> Pairs for Search<'_, '_, F> {
     }
 
     #[inline]
-    fn split(&mut self, views: [u32; 2]) -> Option<[[u32; 2]; 2]> {
+    fn split_pair(&mut self, views: [u32; 2]) -> Option<[[u32; 2]; 2]> {
         let [a, b] = [0, 1].map(|k| self.seen[k].view(views[k]));
         let nodes = [a.node, b.node];
         let Some(which) = node_to_split([a.leaf, b.leaf], |k| [a.size, b.size][k]) else {
@@ -170,20 +173,20 @@ impl<F: FnMut([u32; 2], Apart)> Pairs for Search<'_, '_, F> {
             return None;
         };
         let (axes, side) = (&self.axes, self.scene.side(which == 0));
-        let parts = side.solid.nodes()[nodes[which] as usize].children(nodes[which]);
+        let parts = side.solid.nodes()[nodes[which] as usize].child_positions(nodes[which]);
         let views_of =
             self.seen[which].children(views[which], |_, k| NodeExtents::new(axes, side, parts[k]));
-        Some(views_of.map(|part| replaced(views, which, part)))
+        Some(views_of.map(|part| pair_with_node(views, which, part)))
     }
 
-    fn dismiss(&mut self, entry: &Entry<Apart>) {
+    fn skip_pair(&mut self, entry: &QueuedPair<Apart>) {
         let nodes = self.view_nodes(entry.views);
         (self.cut)(nodes, entry.reason);
     }
 }
 
 /// Returns the lower bound, proven by `reason`, of the distance of all facets of two nodes.
-pub(crate) fn proven_bound(scene: &Scene, axes: &Axes, nodes: [u32; 2], reason: Apart) -> f64 {
+pub(crate) fn proven_bound(scene: &PairFrame, axes: &Axes, nodes: [u32; 2], reason: Apart) -> f64 {
     if reason != Apart::Examined {
         let moving = NodeExtents::new(axes, &scene.moving, nodes[0]);
         let fixed = NodeExtents::new(axes, &scene.fixed, nodes[1]);
@@ -192,7 +195,8 @@ pub(crate) fn proven_bound(scene: &Scene, axes: &Axes, nodes: [u32; 2], reason: 
     let mut least = f64::INFINITY;
     for f in leaf_facets(&scene.moving, nodes[0]) {
         for g in leaf_facets(&scene.fixed, nodes[1]) {
-            least = least.min(triangle::nearest(&f, &g, scene.noise).gap - GAP * scene.noise);
+            least = least
+                .min(triangle::nearest_points(&f, &g, scene.noise).gap - GAP_NOISES * scene.noise);
         }
     }
     least.max(0.0)

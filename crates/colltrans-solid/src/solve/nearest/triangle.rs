@@ -17,10 +17,10 @@ use glam::DVec3;
 const TIGHT: f64 = 0.5;
 
 /// Noises by which a computed gap is lowered.
-pub const GAP: f64 = 0.5;
+pub const GAP_NOISES: f64 = 0.5;
 
 /// Noises by which a computed length is raised.
-pub const LENGTH: f64 = 1.0;
+pub const LENGTH_NOISES: f64 = 1.0;
 
 /// The corners of a triangle in the setting frame.
 pub type Corners = [DVec3; 3];
@@ -40,7 +40,7 @@ pub struct Nearest {
 
 impl Nearest {
     fn candidate_from_weights(f: &Corners, g: &Corners, weights: [DVec3; 2]) -> Candidate {
-        let displacement = mean(g, weights[1]) - mean(f, weights[0]);
+        let displacement = weighted_point(g, weights[1]) - weighted_point(f, weights[0]);
         Candidate { weights, displacement, square: displacement.length_squared() }
     }
 
@@ -62,14 +62,14 @@ struct Candidate {
 
 /// Returns the point of a triangle with the given weights.
 #[inline]
-pub fn mean([a, b, c]: &Corners, weights: DVec3) -> DVec3 {
+pub fn weighted_point([a, b, c]: &Corners, weights: DVec3) -> DVec3 {
     *a * weights.x + *b * weights.y + *c * weights.z
 }
 
 /// Returns the computed distance of the points with the given weights.
 #[inline]
-pub fn length(f: &Corners, g: &Corners, weights: [DVec3; 2]) -> f64 {
-    (mean(g, weights[1]) - mean(f, weights[0])).length()
+pub fn weighted_distance(f: &Corners, g: &Corners, weights: [DVec3; 2]) -> f64 {
+    (weighted_point(g, weights[1]) - weighted_point(f, weights[0])).length()
 }
 
 /// Returns the gap from `f` to `g` along a vector, in multiples of its length; negative if they overlap along it.
@@ -97,7 +97,7 @@ pub(crate) fn unit_vector(v: DVec3) -> Option<DVec3> {
 /// Finds nearest points of two triangles, and a plane between; `None` if a plane shows that their distance is at least
 /// `limit`.
 pub(crate) fn nearest_below(f: &Corners, g: &Corners, limit: f64, noise: f64) -> Option<Nearest> {
-    let end = limit + GAP * noise;
+    let end = limit + GAP_NOISES * noise;
     match by_features(f, g, end) {
         FeatureResult::Beyond => None,
         FeatureResult::Found(found, along) => {
@@ -124,11 +124,11 @@ pub(crate) fn nearest_below(f: &Corners, g: &Corners, limit: f64, noise: f64) ->
 
 /// Finds nearest points of two triangles, and a plane between.
 #[inline]
-pub fn nearest(f: &Corners, g: &Corners, noise: f64) -> Nearest {
+pub fn nearest_points(f: &Corners, g: &Corners, noise: f64) -> Nearest {
     nearest_below(f, g, f64::INFINITY, noise).unwrap_or_else(|| {
         // No plane proves an infinite distance, so any points are valid here.
         let weights = [DVec3::X; 2];
-        let length = length(f, g, weights);
+        let length = weighted_distance(f, g, weights);
         Nearest { weights, length, normal: DVec3::X, gap: f64::NEG_INFINITY }
     })
 }
@@ -281,7 +281,8 @@ fn on_face(face: &Corners, other: &Corners) -> PlaneSide {
     }
 }
 
-/// Returns a normal of a triangle, as long as the square of its edges. It is orthogonal to the longest edge.
+/// Returns a normal of a triangle, orthogonal to its longest edge. Its length is twice the area of the triangle, up to
+/// rounding.
 fn face_normal(corners: &Corners) -> DVec3 {
     let [e, h, k] = edge_vectors(corners);
     let (x, y, z) = (e.length_squared(), h.length_squared(), k.length_squared());
@@ -325,7 +326,7 @@ fn edge_normal(e: DVec3, h: DVec3) -> DVec3 {
 fn compare_all_features(f: &Corners, g: &Corners, known: Nearest) -> Nearest {
     let mut best = known;
     let mut take = |weights: [DVec3; 2]| {
-        let length = length(f, g, weights);
+        let length = weighted_distance(f, g, weights);
         if length < best.length {
             best = Nearest { weights, length, ..best };
         }
@@ -376,10 +377,10 @@ fn on_edges_carefully((a, e): (DVec3, DVec3), (b, h): (DVec3, DVec3)) -> [f64; 2
     [s, t]
 }
 
-/// Returns the normals of all planes that the features span, with either sign.
+/// Returns a normal of each plane that the features span. Its sign is arbitrary.
 fn candidate_normals(f: &Corners, g: &Corners, best: Nearest) -> impl Iterator<Item = DVec3> {
     let (e, h) = (edge_vectors(f), edge_vectors(g));
-    let displacement = mean(g, best.weights[1]) - mean(f, best.weights[0]);
+    let displacement = weighted_point(g, best.weights[1]) - weighted_point(f, best.weights[0]);
     let faces = [face_normal(f), face_normal(g), displacement];
     let products = e.into_iter().flat_map(move |a| h.map(|b| edge_normal(a, b)));
     let beside = e.into_iter().chain(h).map(move |a| without_component(displacement, a));
@@ -395,7 +396,7 @@ mod tests {
     use colltrans_testkit::random::Random;
 
     use super::*;
-    use crate::body::exact::turn;
+    use crate::body::exact::sign_along_axis;
     use colltrans_kernel::noise::Noise;
 
     /// Returns triangles with ties, slivers and coplanar places. The second triangle need not be near the first one.
@@ -427,7 +428,7 @@ mod tests {
         };
         let triangle = |r: &mut Random| loop {
             let corners = corners(r);
-            if !(0..3).all(|k| turn(corners[0], corners[1], corners[2], k) == Equal) {
+            if !(0..3).all(|k| sign_along_axis(corners[0], corners[1], corners[2], k) == Equal) {
                 return corners;
             }
         };
@@ -456,10 +457,11 @@ mod tests {
                 let gap = [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3][random.int(0, 5) as usize];
                 g = put_near(&f, g, gap);
             }
-            let noise = Noise::of(configuration_size(&f, &g)).point();
+            let noise = Noise::for_size(configuration_size(&f, &g)).point_error();
             let found = nearest_below(&f, &g, f64::INFINITY, noise).expect("no limit");
             let right = distance(&f.map(Vector::new), &g.map(Vector::new)).to_f64();
-            let [lower, upper] = [found.gap - GAP * noise, found.length + LENGTH * noise];
+            let [lower, upper] =
+                [found.gap - GAP_NOISES * noise, found.length + LENGTH_NOISES * noise];
             assert!(lower <= right && right <= upper, "{lower:e} {right:e} {upper:e}: {f:?} {g:?}");
             let width = (upper - lower.max(0.0)) / noise;
             assert!(width <= 4.0, "{width} {lower:e} {right:e} {upper:e}: {f:?} {g:?}");
@@ -480,7 +482,7 @@ mod tests {
         let mut dismissed = 0;
         for _ in 0..4_000 {
             let [f, g] = random_triangles(&mut random);
-            let noise = Noise::of(configuration_size(&f, &g)).point();
+            let noise = Noise::for_size(configuration_size(&f, &g)).point_error();
             let right = distance(&f.map(Vector::new), &g.map(Vector::new)).to_f64();
             let limit = right * random.range(0.5, 1.1);
             if nearest_below(&f, &g, limit, noise).is_none() {

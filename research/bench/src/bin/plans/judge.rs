@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use colltrans::Aabb;
 use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::sphere::Sphere;
-use colltrans_assembly::{Bodies, Findings, Room};
+use colltrans_assembly::{Analysis, Bodies, FreeTravel};
 use colltrans_testkit::random::Random;
 use glam::{DVec2, DVec3};
 
@@ -34,7 +34,7 @@ pub(crate) struct PlanJudgement {
 }
 
 impl PlanJudgement {
-    pub(crate) fn of(found: &Findings) -> Self {
+    pub(crate) fn of(found: &Analysis) -> Self {
         let plan = &found.plan;
         let mut directions = found.matrix.directions().to_vec();
         directions.extend(plan.steps.iter().flat_map(|step| [step.direction, -step.direction]));
@@ -42,12 +42,12 @@ impl PlanJudgement {
         let mut frames = DirectionFrames { bodies: found.bodies, known: HashMap::new() };
         let mut judged = Self::default();
         let mut workspace = Workspace::default();
-        let size = found.bodies.assembly().size();
+        let size = found.bodies.assembly().coordinate_size();
         let all: Vec<usize> = (0..found.bodies.len()).collect();
         let mut groups: HashMap<Option<usize>, Vec<usize>> = HashMap::from([(None, all)]);
         for (k, step) in plan.steps.iter().enumerate() {
             let left = groups
-                .get_mut(&step.within)
+                .get_mut(&step.group_step)
                 .expect("a group is taken out before it is taken apart");
             left.retain(|part| !step.parts.contains(part));
             let left = left.clone();
@@ -90,7 +90,7 @@ fn is_free(
 ) -> bool {
     let start = StartOverlap::Refuse;
     let mut pairs = group.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
-    pairs.all(|pair| bodies.room(pair, d, None, start, workspace) == Room::Free)
+    pairs.all(|pair| bodies.free_travel(pair, d, None, start, workspace) == FreeTravel::Free)
 }
 
 /// The boxes of all parts in frames whose third axis is a direction.
@@ -108,7 +108,7 @@ impl DirectionFrames<'_> {
             let (u, v) = d.any_orthonormal_pair();
             let seen = |p: &DVec3| DVec3::new(p.dot(u), p.dot(v), p.dot(d));
             let around = |part: &colltrans_assembly::Part| {
-                Aabb::of_points(part.solid().vertices().iter().map(seen))
+                Aabb::from_points(part.solid().vertices().iter().map(seen))
             };
             parts.iter().map(around).collect()
         });
@@ -140,7 +140,7 @@ fn count_crossing_rays(
     let mut rays: Vec<Vec<ProjectedRay>> = Vec::new();
     for &part in group {
         let solid = assembly.parts()[part].solid();
-        let below = BELOW * assembly.size() + bodies.fit().tolerance();
+        let below = BELOW * assembly.coordinate_size() + bodies.fit().tolerance();
         let points = draw_points(solid.vertices(), solid.triangles(), below, &mut random);
         rays.push(
             points.into_iter().map(|p| ProjectedRay { at: flat(p), from: p.dot(d) }).collect(),
@@ -153,10 +153,9 @@ fn count_crossing_rays(
                 (low.min(ray.at), high.max(ray.at))
             });
         let mut met = vec![false; rays.len()];
-        for &other in left
-            .iter()
-            .filter(|&&b| bodies.tolerated([part, b]).is_none() && !bodies.overlaps(part, b))
-        {
+        for &other in left.iter().filter(|&&b| {
+            bodies.tolerated_contacts([part, b]).is_none() && !bodies.overlaps(part, b)
+        }) {
             let solid = assembly.parts()[other].solid();
             for corners in solid.triangles() {
                 let corners = corners.map(|k| solid.vertices()[k as usize]);

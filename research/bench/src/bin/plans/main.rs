@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use clap::Args;
 use colltrans_assembly::{
-    Assembly, Bodies, Findings, Fit, Part, Piece, Question, Stage, Watch, suggest,
+    Analysis, AnalysisRequest, Assembly, Bodies, Fit, Part, Piece, Stage, Watch, suggest,
 };
 use colltrans_assembly_io::read::{ReadOptions, read};
 use colltrans_bench::harness::{self, Failure};
@@ -146,18 +146,18 @@ fn write_parts(folder: &Path, parts: &[NamedPart]) -> Result<(), Failure> {
 
 /// Plans without options; if that plan is incomplete, plans again with the suggested options.
 fn plan_row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Failure> {
-    let question = Question::default();
+    let question = AnalysisRequest::default();
     let fit = Fit::default_for(assembly);
     let clock = Clock::start();
     let bodies = Bodies::new(assembly, fit)?;
     let (found, stages) = find_plan(&question, &bodies, &clock)?;
     let mut told = vec![judgement_row(name, "", &found, clock.seconds(), judged)];
     println!("{:>20}{stages}", "");
-    if !found.plan.stuck.is_empty() && !found.suggestions.is_empty() {
+    if !found.plan.interlocked.is_empty() && !found.suggestions.is_empty() {
         let clock = Clock::start();
-        let suggested = suggest::applied(assembly.clone(), &found.suggestions)?;
+        let suggested = suggest::apply_suggestions(assembly.clone(), &found.suggestions)?;
         let bodies = Bodies::new(&suggested, fit)?;
-        let found = question.ask(&bodies, Watch::default())?;
+        let found = question.analyse(&bodies, Watch::default())?;
         told.push(judgement_row(name, "--auto", &found, clock.seconds(), judged));
     }
     Ok(json!({ "name": name, "plans": told }))
@@ -165,10 +165,10 @@ fn plan_row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Fail
 
 /// Plans, and measures the time of the phases.
 fn find_plan<'a>(
-    question: &Question,
+    question: &AnalysisRequest,
     bodies: &'a Bodies<'a>,
     clock: &Clock,
-) -> Result<(Findings<'a>, String), Failure> {
+) -> Result<(Analysis<'a>, String), Failure> {
     let stages = Mutex::new(vec![("bodies", 0.0), ("", clock.seconds())]);
     let known = || stages.lock().unwrap_or_else(PoisonError::into_inner);
     let reached = |stage: Stage, _: usize, _: usize| {
@@ -177,7 +177,7 @@ fn find_plan<'a>(
             stages.push((stage.name(), clock.seconds()));
         }
     };
-    let found = question.ask(bodies, Watch::default().with_progress(&reached))?;
+    let found = question.analyse(bodies, Watch::default().with_progress(&reached))?;
     let stages = known();
     let ends = stages.iter().skip(1).map(|stage| stage.1).chain([clock.seconds()]);
     let each = stages.iter().zip(ends).filter(|((name, _), _)| !name.is_empty());
@@ -188,17 +188,18 @@ fn find_plan<'a>(
 }
 
 /// Returns the row of a plan.
-fn judgement_row(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool) -> Value {
+fn judgement_row(name: &str, options: &str, found: &Analysis, seconds: f64, judged: bool) -> Value {
     let (plan, assembly) = (&found.plan, found.bodies.assembly());
-    let facets: usize = assembly.parts().iter().map(Part::facets).sum();
+    let facets: usize = assembly.parts().iter().map(Part::facet_count).sum();
     let stages = plan.stages().len();
     println!(
         "{name:>16} {options}: {} parts, {facets} facets, {seconds:.2} s: {} steps in {stages} stages",
         assembly.parts().len(),
         plan.steps.len(),
     );
-    let whole = plan.left.is_empty() && plan.stuck.is_empty();
-    let reasons: Vec<String> = plan.stuck.iter().map(|s| s.reason(found.bodies)).collect();
+    let whole = plan.remaining.is_empty() && plan.interlocked.is_empty();
+    let reasons: Vec<String> =
+        plan.interlocked.iter().map(|s| s.reason_sentence(found.bodies)).collect();
     for reason in &reasons {
         println!("{:>20}{reason}", "");
     }
@@ -233,7 +234,7 @@ fn compare_with_rotated(name: &str, parts: &[NamedPart]) -> Result<Value, Failur
         for (k, place) in places.into_iter().enumerate() {
             let assembly = build_assembly(parts, place)?;
             let up = place.transform_vector3(glam::DVec3::Z);
-            let question = Question::default().with_gravity(-up);
+            let question = AnalysisRequest::default().with_gravity(-up);
             let clock = Clock::start();
             let bodies = Bodies::new(&assembly, Fit::default_for(&assembly))?;
             let (found, stages) = find_plan(&question, &bodies, &clock)?;

@@ -1,6 +1,6 @@
 //! Formats the part of the page on the collision translation algorithm, from runs of `paper`.
 
-use colltrans_bench::harness::markdown;
+use colltrans_bench::harness::markdown_table;
 use serde_json::Value;
 
 use super::{provenance, rows};
@@ -52,9 +52,9 @@ pub(super) fn section(run: &Value) -> String {
          in ns of each phase, and iterations of all loops in a planar problem.\n\n{}\n\
          Queries without an answer: {failures}.\n",
         provenance(run),
-        markdown(&casts, rows(run).iter().filter(is_one_off)),
-        markdown(&sequences, rows(run).iter().filter(|row| !is_one_off(row))),
-        markdown(&phases, &phased),
+        markdown_table(&casts, rows(run).iter().filter(is_one_off)),
+        markdown_table(&sequences, rows(run).iter().filter(|row| !is_one_off(row))),
+        markdown_table(&phases, &phased),
     )
 }
 

@@ -1,6 +1,6 @@
 //! Formats the section on many casts of one pair.
 
-use colltrans_bench::harness::markdown;
+use colltrans_bench::harness::markdown_table;
 use serde_json::Value;
 
 use super::{number, provenance, rows};
@@ -25,6 +25,6 @@ pub(super) fn section(run: &Value) -> String {
          in brackets how many times as fast as the ordinary cast. *make*: µs for the faces and the map; *pays*: \
          the casts after which they have paid; *left*: what the faces did not answer, in %, which of *tied* are grazing.\n\n{}",
         provenance(run),
-        markdown(columns, &rows),
+        markdown_table(columns, &rows),
     )
 }

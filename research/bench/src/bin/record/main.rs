@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use colltrans_bench::harness::markdown;
+use colltrans_bench::harness::markdown_table;
 use colltrans_lab::claims::CLAIMS;
 use colltrans_lab::draw::draw;
 use colltrans_lab::finding::{Axis, Figure, Point, Series};
@@ -236,7 +236,7 @@ fn general(run: &Value) -> String {
          Queries without an answer: {failures}. Answers that differ from parry's by more than 1e-4, \
          ties included: {differ}.\n",
         provenance(run),
-        markdown(&columns, rows(run).iter().filter(|row| !is_tied(row))),
+        markdown_table(&columns, rows(run).iter().filter(|row| !is_tied(row))),
     )
 }
 
@@ -260,7 +260,7 @@ fn ties(run: &Value) -> String {
         "\n## Casts from scratch, ties\n\nThe same run. Means without the slowest hundredth, in ns: \
          ties are the case in which the mean tells. *x* is parry's mean over ours, *own* our mean \
          over our mean for the same bodies in general position; *cold*: 4 MiB of other data before each query.\n\n{}",
-        markdown(columns, &tied),
+        markdown_table(columns, &tied),
     )
 }
 
@@ -284,7 +284,7 @@ fn coherence(run: &Value) -> String {
          from scratch and with region focus alone.\n\n{}\n\
          Answers that differ from those from scratch beyond both tolerances: {}.\n",
         provenance(run),
-        markdown(&columns, rows(run)),
+        markdown_table(&columns, rows(run)),
         sum(run, &["differences".into()]),
     )
 }
@@ -313,7 +313,7 @@ fn solids(run: &Value) -> String {
          first of all. *flat*: a plate on another, as its name says.\n\n{}\n\
          Answers that differ from parry's: {}.\n{}",
         provenance(run),
-        markdown(columns, &sorted),
+        markdown_table(columns, &sorted),
         sum(run, &["answers_apart".into()]),
         if has_starts { starts } else { "" },
     )
@@ -326,7 +326,10 @@ fn building(run: &Value) -> String {
         "\n## Memory and building\n\nOf the run of casts from scratch: everything a polyhedron \
          carries, the sections of `cta` included; built from points or faces, drawing them and making \
          the sections included. The program `memory` tells what sections take.\n\n{}",
-        markdown(columns, rows(run).iter().filter(|row| string(row, "meeting") == "colliding")),
+        markdown_table(
+            columns,
+            rows(run).iter().filter(|row| string(row, "meeting") == "colliding")
+        ),
     )
 }
 
@@ -388,7 +391,7 @@ fn small_table(run: &Value) -> Result<String, Failure> {
         "Medians in ns, {} ({}, rustc's release profile); *x* is parry's over ours.\n\n{}",
         string(run, "date").get(..10).unwrap_or("?"),
         string(&run["machine"], "cpu"),
-        markdown(columns, SMALL.into_iter().map(row).collect::<Result<Vec<_>, _>>()?),
+        markdown_table(columns, SMALL.into_iter().map(row).collect::<Result<Vec<_>, _>>()?),
     ))
 }
 

@@ -24,7 +24,7 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
     let [moving, fixed] =
         [bodies.moving.at(setting.moving_pose), bodies.fixed.at(setting.fixed_pose)];
     let rotations = FixedRotations::new(moving, fixed);
-    let Ok(approach) = rotations.along(setting.direction) else { return };
+    let Ok(approach) = rotations.for_direction(setting.direction) else { return };
     let mut random = Random::new(seed ^ 0xb01c);
     for which in 0..CASTS {
         let Ok(cast) = cast(&setting, &bodies, which, &mut random) else { continue };

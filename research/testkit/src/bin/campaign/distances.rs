@@ -3,7 +3,7 @@
 
 use colltrans::{Pair, Pose, QueryError, Within};
 use colltrans_testkit::oracle::check::Objection;
-use colltrans_testkit::oracle::nearest::Judge;
+use colltrans_testkit::oracle::nearest::DistanceJudge;
 use colltrans_testkit::oracle::settings::{Bodies, Setting, near_contact, setting};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::tally::Tally;
@@ -51,7 +51,7 @@ fn judge_distances(
     let error = |e: &dyn std::fmt::Display| Objection(e.to_string());
     let pair = Pair::new(bodies.moving.at(moving), bodies.fixed.at(setting.fixed_pose))
         .map_err(|e| error(&e))?;
-    let judge = Judge::new(pair);
+    let judge = DistanceJudge::new(pair);
     let (answer, depth) = match (pair.distance(), pair.depth()) {
         (Ok(answer), Ok(depth)) => (answer, depth),
         (Err(QueryError::NotConverged { .. }), _) | (_, Err(QueryError::NotConverged { .. })) => {

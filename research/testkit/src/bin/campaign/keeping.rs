@@ -4,7 +4,7 @@
 
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pair, Pose, QueryError};
 use colltrans_testkit::oracle::check::Objection;
-use colltrans_testkit::oracle::keep::Judge;
+use colltrans_testkit::oracle::min_gap::GapJudge;
 use colltrans_testkit::oracle::settings::setting;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{random_hull, reach};
@@ -104,7 +104,7 @@ fn draw_gap(cast: &Cast, random: &mut Random) -> f64 {
         // The gap of the shadows, or that at the start, or one close to it.
         kind => {
             let tied = if kind == 8 {
-                Judge::new(*cast).shadows
+                GapJudge::new(*cast).shadows
             } else {
                 let pair = Pair::new(
                     cast.moving().at(cast.moving_pose()),
@@ -121,11 +121,11 @@ fn draw_gap(cast: &Cast, random: &mut Random) -> f64 {
 /// Judges the first contact and the clearance with a gap.
 fn judge_with_gap(cast: &Cast, gap: f64, tally: &mut Tally) -> Result<(), Objection> {
     let error = |e: &dyn std::fmt::Display| Objection(e.to_string());
-    let kept = cast.keeping(gap).map_err(|e| error(&e))?;
+    let kept = cast.with_min_gap(gap).map_err(|e| error(&e))?;
     if gap == 0.0 && kept.first_contact() != cast.first_contact() {
         return Err(Objection("a gap of 0 changes the answer".into()));
     }
-    let judge = Judge::new(kept);
+    let judge = GapJudge::new(kept);
     let (outcome, clearance) = match (kept.first_contact(), kept.clearance()) {
         (Ok(outcome), Ok(clearance)) => (outcome, clearance),
         (Err(QueryError::NotConverged { reason }), _)

@@ -5,7 +5,7 @@
 use colltrans::motion::{Motion, MotionCast, MotionClearance, MotionOutcome, MotionStop};
 use colltrans::{MIN_MAGNITUDE, Pair, Pose, QueryError};
 use colltrans_testkit::oracle::check::Objection;
-use colltrans_testkit::oracle::motion::{Judge, Spin};
+use colltrans_testkit::oracle::motion::{MotionJudge, Spin};
 use colltrans_testkit::oracle::settings::setting;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::reach;
@@ -53,12 +53,12 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
         Some(motion_at_rest(poses[1]))
     };
     let Some(fixed) = fixed else { return Ok(()) };
-    let keep = match random.index(6) {
+    let min_gap = match random.index(6) {
         0 => size * 10.0_f64.powf(random.range(-12.0, -0.5)),
         1 => -size * 10.0_f64.powf(random.range(-12.0, -1.0)),
         _ => 0.0,
     };
-    let judge = Judge { bodies: [p, q], spins: [moving, fixed], keep };
+    let judge = MotionJudge { bodies: [p, q], spins: [moving, fixed], min_gap };
     Ok(check_first_contact(&judge, seed.is_multiple_of(SAMPLE), tally)?)
 }
 
@@ -94,19 +94,23 @@ fn draw_spin(start: Pose, other: Pose, way: DVec3, size: f64, random: &mut Rando
 /// Builds the library's motion from these numbers; `None` if it is out of range.
 fn motion(spin: &Spin) -> Option<Motion> {
     let Spin { start, arm, axis, angle, way } = spin;
-    Motion::about(*start, *arm, *axis, *angle, *way).ok()
+    Motion::from_arm_and_axis(*start, *arm, *axis, *angle, *way).ok()
 }
 
 /// Computes the first contact, and checks it with the library, and in integer arithmetic if required.
 fn check_first_contact(
-    judge: &Judge,
+    judge: &MotionJudge,
     in_whole_numbers: bool,
     tally: &mut Tally,
 ) -> Result<(), Objection> {
     let [Some(moving), Some(fixed)] = judge.spins.each_ref().map(motion) else { return Ok(()) };
     let cast = MotionCast::new(judge.bodies[0].along(&moving), judge.bodies[1].along(&fixed));
     let kept = cast.and_then(|cast| {
-        if judge.keep < 0.0 { cast.tolerating(-judge.keep) } else { cast.keeping(judge.keep) }
+        if judge.min_gap < 0.0 {
+            cast.with_tolerance(-judge.min_gap)
+        } else {
+            cast.with_min_gap(judge.min_gap)
+        }
     });
     let cast = kept.map_err(|e| Objection(e.to_string()))?;
     let outcome = cast.first_contact().map_err(|e| Objection(e.to_string()))?;
@@ -127,7 +131,7 @@ fn check_first_contact(
 /// Checks the clearance: its proof holds, it does not extend through a deep contact, and no position on the way
 /// is deep.
 fn check_clearance(
-    judge: &Judge,
+    judge: &MotionJudge,
     cast: &MotionCast,
     first: &MotionOutcome,
     judged: bool,
@@ -140,12 +144,12 @@ fn check_clearance(
             return Ok(());
         }
         // This occurs if bodies are smaller than rounding errors.
-        Err(QueryError::Coarse { .. }) => return Ok(()),
+        Err(QueryError::PositionError { .. }) => return Ok(()),
         Err(e) => return Err(Objection(format!("clearance: {e}"))),
     };
     let object =
         |what: String| Err(Objection(format!("clearance up to {:?}: {what}", found.time())));
-    let cleared = cast.cleared();
+    let cleared = cast.with_clearance_tolerance();
     let shrunk = match &found {
         MotionClearance::Overlapping(_) => {
             let overlaps = matches!(first, MotionOutcome::Overlapping(_));
@@ -170,15 +174,15 @@ fn check_clearance(
         }
     };
     cleared.verify(shrunk.proof()).map_err(|e| Objection(format!("clearance: {e}")))?;
-    let keep = cleared.keep() - cleared.tolerance();
+    let min_gap = cleared.min_gap() - cleared.tolerance();
     let planes: usize = shrunk.proof().spans.iter().map(Vec::len).sum();
     if judged && planes < 60 {
         let spins = judge.spins.clone();
-        Judge { bodies: judge.bodies, spins, keep }
+        MotionJudge { bodies: judge.bodies, spins, min_gap }
             .check(&shrunk)
             .map_err(|Objection(what)| Objection(format!("clearance: {what}")))?;
     }
-    on_the_way(cast, found.time().unwrap_or(0.0), keep)
+    on_the_way(cast, found.time().unwrap_or(0.0), min_gap)
 }
 
 /// Returns the time up to which a first contact proves that the bodies are disjoint.
@@ -192,12 +196,14 @@ fn apart_until(first: &MotionOutcome) -> f64 {
     }
 }
 
-/// Checks that the bodies are not nearer than `keep` up to a time, or not deeper than `-keep` if it is
+/// Checks that the bodies are not nearer than `min_gap` up to a time, or not deeper than `-keep` if it is
 /// negative.
-fn on_the_way(cast: &MotionCast, until: f64, keep: f64) -> Result<(), Objection> {
+fn on_the_way(cast: &MotionCast, until: f64, min_gap: f64) -> Result<(), Objection> {
     for k in 0..=TIMES {
         let time = until * f64::from(k) / f64::from(TIMES);
-        let [Ok(p), Ok(q)] = cast.motions().map(|motion| motion.at(time)) else { return Ok(()) };
+        let [Ok(p), Ok(q)] = cast.motions().map(|motion| motion.pose_at(time)) else {
+            return Ok(());
+        };
         let [moving, fixed] = cast.bodies();
         let pair = Pair::new(moving.at(p), fixed.at(q)).map_err(|e| Objection(e.to_string()))?;
         // Poses are rounded relative to their size, and coordinates close to zero are not represented.
@@ -205,8 +211,8 @@ fn on_the_way(cast: &MotionCast, until: f64, keep: f64) -> Result<(), Objection>
         let size = far[0] + far[1] + reach(moving.vertices()) + reach(fixed.vertices());
         let off = 256.0 * f64::EPSILON * size + 4.0 * MIN_MAGNITUDE;
         let wrong = match (pair.depth(), pair.distance()) {
-            (Ok(depth), _) if keep <= 0.0 && depth.lower > off - keep => Some(-depth.lower),
-            (_, Ok(found)) if keep > 0.0 && found.upper < keep - off => Some(found.upper),
+            (Ok(depth), _) if min_gap <= 0.0 && depth.lower > off - min_gap => Some(-depth.lower),
+            (_, Ok(found)) if min_gap > 0.0 && found.upper < min_gap - off => Some(found.upper),
             _ => None,
         };
         if let Some(gap) = wrong {

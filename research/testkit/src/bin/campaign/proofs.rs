@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use colltrans_testkit::oracle::proofs::checkers::Fractions;
+use colltrans_testkit::oracle::proofs::checkers::RationalChecker;
 use colltrans_testkit::oracle::proofs::{Campaign, KINDS};
 use colltrans_testkit::tally::Tally;
 
@@ -13,7 +13,7 @@ pub(crate) const MUTANTS: u64 = 50;
 
 thread_local! {
     /// The process of this thread that runs `check.py`.
-    static FRACTIONS: RefCell<Option<Fractions>> = const { RefCell::new(None) };
+    static FRACTIONS: RefCell<Option<RationalChecker>> = const { RefCell::new(None) };
 }
 
 /// Examines the proof of a seed and its mutants.
@@ -21,7 +21,8 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
     let Some(kind) = KINDS.iter().find(|kind| kind.name == asked.family) else { return Ok(()) };
     FRACTIONS.with_borrow_mut(|fractions| {
         if fractions.is_none() {
-            let started = Fractions::start().map_err(|e| format!("cannot start check.py: {e}"));
+            let started =
+                RationalChecker::start().map_err(|e| format!("cannot start check.py: {e}"));
             *fractions = Some(started?);
         }
         Campaign::examine(kind, asked.seed, fractions.as_mut(), tally);

@@ -3,7 +3,9 @@
 
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
-use colltrans_testkit::oracle::solids::{Seen, as_solids, keep, nearest, sheets, turning};
+use colltrans_testkit::oracle::solids::{
+    MotionOutcome, as_solids, min_gap, nearest, sheets, turning,
+};
 use colltrans_testkit::tally::Tally;
 
 use crate::Asked;
@@ -62,10 +64,10 @@ pub(crate) fn casts(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> 
         setting.and_then(|setting| setting.examine(in_fractions)).map(Some)
     };
     count_outcome(found, tally, |seen| match seen {
-        Seen::Overlapping => "overlapping",
-        Seen::Free => "free",
-        Seen::BlockedNow => "touching",
-        Seen::Blocked => "blocked",
+        MotionOutcome::Overlapping => "overlapping",
+        MotionOutcome::Free => "free",
+        MotionOutcome::BlockedNow => "touching",
+        MotionOutcome::Blocked => "blocked",
     })
 }
 
@@ -74,29 +76,29 @@ pub(crate) fn distances(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), Stri
     let setting = nearest::Setting::draw(asked.family, asked.seed);
     let found = setting.and_then(|found| found.map(|setting| setting.examine()).transpose());
     count_outcome(found, tally, |seen| match seen {
-        nearest::Seen::Touching => "touching",
-        nearest::Seen::Inside => "inside",
-        nearest::Seen::Near => "near",
-        nearest::Seen::Apart => "apart",
+        nearest::DistanceOutcome::Touching => "touching",
+        nearest::DistanceOutcome::Inside => "inside",
+        nearest::DistanceOutcome::Near => "near",
+        nearest::DistanceOutcome::Apart => "apart",
     })
 }
 
 /// Examines casts with a minimum gap.
 pub(crate) fn keeping(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
-    count_outcome(keep::examine(asked.family, asked.seed), tally, |seen| match seen {
-        keep::Seen::Nearer => "nearer",
-        keep::Seen::Free => "free",
-        keep::Seen::Blocked => "blocked",
+    count_outcome(min_gap::examine(asked.family, asked.seed), tally, |seen| match seen {
+        min_gap::GapOutcome::Nearer => "nearer",
+        min_gap::GapOutcome::Free => "free",
+        min_gap::GapOutcome::Blocked => "blocked",
     })
 }
 
 /// Examines motions.
 pub(crate) fn motions(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     count_outcome(turning::examine(asked.family, asked.seed), tally, |seen| match seen {
-        turning::Seen::Overlapping => "overlapping",
-        turning::Seen::Free => "free",
-        turning::Seen::Grazing => "grazing",
-        turning::Seen::Contact => "contact",
+        turning::TurningOutcome::Overlapping => "overlapping",
+        turning::TurningOutcome::Free => "free",
+        turning::TurningOutcome::Grazing => "grazing",
+        turning::TurningOutcome::Contact => "contact",
     })
 }
 

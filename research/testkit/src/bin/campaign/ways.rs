@@ -2,8 +2,8 @@
 //! moves of cubes, and boxes with holes that are large enough or not, axis-aligned and rotated. Every leg is
 //! checked at 201 positions.
 
+use colltrans::removal::path::{Order, RemovalOptions, RemovalPath, RemovalSearch};
 use colltrans::solid::SolidCast;
-use colltrans::ways::{Order, WayOptions, WayOut, WaysOut};
 use colltrans::{Cast, ConvexPolyhedron, Placed, Pose, Solid};
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
@@ -46,16 +46,17 @@ fn examine_puzzle(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<
     let cubes = Cubes::random(random);
     let solids = cubes.solids();
     let placed: Vec<Placed<'_, Solid>> = solids.iter().map(|solid| solid.at(pose)).collect();
-    let options = WayOptions::default()
+    let options = RemovalOptions::default()
         .with_order(Order::FewestLegs)
         .with_tolerance(1e-5)
         .with_legs(LEGS)
         .with_cells(2_000);
-    let answer = WaysOut::among(&placed, &[], &options, None).map_err(|e| e.to_string())?;
+    let answer =
+        RemovalSearch::search_among(&placed, &[], &options, None).map_err(|e| e.to_string())?;
     let level = cubes.level().filter(|level| level.moves <= LEGS);
     match (&answer, level) {
-        (WaysOut::Found(way), Some(level)) if way.legs.len() == level.moves => (),
-        (WaysOut::Found(way), _) => {
+        (RemovalSearch::Found(way), Some(level)) if way.legs.len() == level.moves => (),
+        (RemovalSearch::Found(way), _) => {
             return Err(format!("{} legs, {level:?} of cubes", way.legs.len()));
         }
         (_, Some(level)) => return Err(format!("no way, {level:?} of cubes")),
@@ -91,15 +92,16 @@ fn holes(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), Strin
     let cube = block(at.to_array(), (at + 1.0).to_array())?;
     let cube = Solid::from_pieces([&cube]).map_err(|e| e.to_string())?;
     let placed = [cube.at(pose), walls.at(pose)];
-    let options = WayOptions::default().with_tolerance(1e-5).with_places(200);
-    let answer = WaysOut::among(&placed, &[1], &options, None).map_err(|e| e.to_string())?;
+    let options = RemovalOptions::default().with_tolerance(1e-5).with_places(200);
+    let answer =
+        RemovalSearch::search_among(&placed, &[1], &options, None).map_err(|e| e.to_string())?;
     match &answer {
-        WaysOut::Found(_) if hole < 1.0 - 1e-5 => return Err(format!("through {hole}")),
-        WaysOut::Proven(_) if hole > 1.0 => return Err(format!("none through {hole}")),
+        RemovalSearch::Found(_) if hole < 1.0 - 1e-5 => return Err(format!("through {hole}")),
+        RemovalSearch::Proven(_) if hole > 1.0 => return Err(format!("none through {hole}")),
         _ => (),
     }
     let overlap = |[i, j]: [usize; 2], by: DVec3| {
-        let moved = pose.translated(by).expect("a place");
+        let moved = pose.translated_by(by).expect("a place");
         let cast = Cast::new(placed[i].body.at(moved), placed[j], DVec3::Z);
         cast.and_then(|cast| cast.with_tolerance(1e-5)).is_ok_and(|cast| cast.overlaps())
     };
@@ -109,17 +111,17 @@ fn holes(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), Strin
 /// Verifies the proof, and checks 201 positions of each leg.
 fn check_legs(
     placed: &[Placed<'_, Solid>],
-    answer: &WaysOut,
+    answer: &RemovalSearch,
     tally: &mut Tally,
     enters: impl Fn([usize; 2], DVec3) -> bool,
 ) -> Result<(), String> {
     let way = match answer {
-        WaysOut::Found(way) => way,
-        WaysOut::Proven(proof) => {
+        RemovalSearch::Found(way) => way,
+        RemovalSearch::Proven(proof) => {
             tally.count("proven");
             return proof.verify(&placed[0], &placed[1]).map_err(|e| e.to_string());
         }
-        WaysOut::NotFound { .. } => {
+        RemovalSearch::NotFound { .. } => {
             tally.count("open");
             return Ok(());
         }
@@ -136,7 +138,7 @@ fn check_legs(
 
 /// Returns a description of the first overlap on a path; `None` if there is none.
 fn first_overlap(
-    way: &WayOut,
+    way: &RemovalPath,
     bodies: usize,
     enters: &impl Fn([usize; 2], DVec3) -> bool,
     tally: &mut Tally,
@@ -165,7 +167,7 @@ fn first_overlap(
 /// Checks that a leg which is extended beyond its proof is rejected, or that the extended leg has no overlap.
 fn check_extended_leg(
     placed: &[Placed<'_, Solid>],
-    way: &WayOut,
+    way: &RemovalPath,
     enters: &impl Fn([usize; 2], DVec3) -> bool,
     tally: &mut Tally,
 ) -> Result<(), String> {

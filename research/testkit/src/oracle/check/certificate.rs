@@ -199,7 +199,7 @@ impl Judge<'_> {
     /// bodies.
     fn check_points(&self, contact: &Contact, roundings: f64) -> Result<(), Objection> {
         let Contact { translation, normal, .. } = *contact;
-        let WitnessPoints { on_moving, on_fixed } = contact.points(&self.cast);
+        let WitnessPoints { on_moving, on_fixed } = contact.witness_points(&self.cast);
         // In world coordinates, whose rounding error depends on the distance from the origin.
         let away = on_moving.length().max(on_fixed.length());
         let tolerance = (roundings + 1.0) * self.scene.noise + 8.0 * f64::EPSILON * away;
@@ -244,7 +244,7 @@ impl Judge<'_> {
         let top = points.iter().map(|v| normal.dot(v)).max().expect("a body has a point");
         // The faces of a body are flat up to its hull error.
         let tolerance = (TWO_ROUNDINGS + 1.0) * self.scene.noise + 2.0 * body.hull_error();
-        for VertexId(vertex) in feature.own_vertices(body) {
+        for VertexId(vertex) in feature.vertex_positions(body) {
             let depth = (&top - &normal.dot(&points[vertex as usize])).to_f64();
             require!(
                 depth <= tolerance,

@@ -88,7 +88,7 @@ impl<'a> Judge<'a> {
     /// Builds the judge of a query.
     pub fn new(cast: Cast<'a>) -> Self {
         Self {
-            scene: Scene::of(&cast),
+            scene: Scene::from_cast(&cast),
             cast,
             input: None,
             truth: OnceCell::new(),
@@ -131,7 +131,7 @@ impl<'a> Judge<'a> {
 /// # Errors
 /// [`Objection`] with the difference. At the boundary of the shadow both answers may be admissible, which
 /// [`Judge::compare_with_oracle`] decides for each.
-pub fn same(first: &Outcome, second: &Outcome) -> Result<(), Objection> {
+pub fn compare_answers(first: &Outcome, second: &Outcome) -> Result<(), Objection> {
     let (a, b) = match (first, second) {
         (Outcome::Separated(_), Outcome::Separated(_)) => return Ok(()),
         (Outcome::Contact(a), Outcome::Contact(b)) => (a, b),

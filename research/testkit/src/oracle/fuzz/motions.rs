@@ -8,7 +8,7 @@ use colltrans::QueryError;
 use colltrans::motion::{Motion, MotionCast};
 
 use super::{Reader, read_setting};
-use crate::oracle::motion::{Judge, Spin};
+use crate::oracle::motion::{MotionJudge, Spin};
 
 /// Maximum angle. Larger angles are covered by the library's own checks.
 const MOST_ANGLE: f64 = 1e4;
@@ -35,14 +35,16 @@ pub fn motion(bytes: &[u8]) {
         spins.push(Spin { start, arm, axis, angle, way });
     }
     let Ok([moving, fixed]) = <[Spin; 2]>::try_from(spins) else { return };
-    let spun = |spin: &Spin| Motion::about(spin.start, spin.arm, spin.axis, spin.angle, spin.way);
+    let spun = |spin: &Spin| {
+        Motion::from_arm_and_axis(spin.start, spin.arm, spin.axis, spin.angle, spin.way)
+    };
     let (Ok(a), Ok(b)) = (spun(&moving), spun(&fixed)) else { return };
     let cast = MotionCast::new(bodies.moving.along(&a), bodies.fixed.along(&b));
     let (kind, length) = (reader.byte(), reader.number().abs() / 64.0);
     let kept = cast.and_then(|cast| match kind % 3 {
         0 => Ok(cast),
-        1 => cast.keeping(length),
-        _ => cast.tolerating(length),
+        1 => cast.with_min_gap(length),
+        _ => cast.with_tolerance(length),
     });
     let Ok(cast) = kept else { return };
     let outcome = match cast.first_contact() {
@@ -56,7 +58,7 @@ pub fn motion(bytes: &[u8]) {
     if outcome.proof().spans.iter().map(Vec::len).sum::<usize>() > MOST_PLANES {
         return;
     }
-    let (bodies, keep) = ([&bodies.moving, &bodies.fixed], cast.keep() - cast.tolerance());
-    let judge = Judge { bodies, spins: [moving, fixed], keep };
+    let (bodies, min_gap) = ([&bodies.moving, &bodies.fixed], cast.min_gap() - cast.tolerance());
+    let judge = MotionJudge { bodies, spins: [moving, fixed], min_gap };
     judge.check(&outcome).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
 }

@@ -4,13 +4,13 @@
 //! 2 selects solids), the bodies, their poses, and the parameters of the query.
 
 use colltrans::solid::SolidCast;
-use colltrans::{Among, AnyBody, Cast, ObstacleId, Obstacles, Pair, Pose};
+use colltrans::{AnyBody, Cast, ObstacleId, Obstacles, Pair, Pose, SceneQuery};
 use glam::{DQuat, DVec3};
 
 use super::{MOST_JUDGED, Reader, read_setting, read_solid};
 use crate::oracle::settings::{Bodies, Setting};
-use crate::oracle::solids::{keep as solids_keep, nearest as solids};
-use crate::oracle::{among, keep as convex_keep, nearest};
+use crate::oracle::solids::{min_gap as solids_keep, nearest as solids};
+use crate::oracle::{among, min_gap as convex_keep, nearest};
 use crate::tally::Tally;
 
 /// Maximum number of pairs of facets that are judged in rational arithmetic. More pairs would only slow down a
@@ -69,7 +69,7 @@ pub fn distance(bytes: &[u8]) {
         Some(Read::Convex(of)) => {
             let pair = build_pair(&of.0, &of.1);
             let answer = pair.distance().unwrap_or_else(|e| panic!("{e}"));
-            nearest::Judge::new(pair).check(&answer).unwrap_or_else(|e| panic!("{e}"));
+            nearest::DistanceJudge::new(pair).check(&answer).unwrap_or_else(|e| panic!("{e}"));
         }
     }
 }
@@ -83,7 +83,7 @@ pub fn depth(bytes: &[u8]) {
     let Some((setting, bodies)) = read_setting(&mut reader) else { return };
     let pair = build_pair(&setting, &bodies);
     let depth = pair.depth().unwrap_or_else(|e| panic!("{e}"));
-    let judge = nearest::Judge::new(pair);
+    let judge = nearest::DistanceJudge::new(pair);
     judge.check_depth(&depth).unwrap_or_else(|e| panic!("{e}"));
     let vertices = bodies.moving.vertices().len() + bodies.fixed.vertices().len();
     if judge.truth.intersects() && vertices <= MOST_COMPARED {
@@ -99,7 +99,7 @@ pub fn within(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
     let Some((setting, bodies)) = read_setting(&mut reader) else { return };
     let pair = build_pair(&setting, &bodies);
-    let judge = nearest::Judge::new(pair);
+    let judge = nearest::DistanceJudge::new(pair);
     let truth = judge.truth.to_f64();
     let lengths = [truth, truth.next_up(), truth.next_down(), truth + 4.0 * judge.noise];
     for length in lengths.into_iter().chain([reader.number(), truth * reader.number()]) {
@@ -124,7 +124,7 @@ pub fn keep(bytes: &[u8]) {
             let gap = f64::from(reader.byte()) / 16.0 + 1.0 / 64.0;
             let ([a, b], [p, q]) = (&of.solids, of.poses);
             let cast = Cast::new(a.at(p), b.at(q), reader.vector());
-            let kept = cast.and_then(|cast| cast.with_tolerance(0.0)?.keeping(gap));
+            let kept = cast.and_then(|cast| cast.with_tolerance(0.0)?.with_min_gap(gap));
             // Bodies that are much larger than the gap are covered by other judges.
             if let Ok(cast) = kept
                 && gap > 1e-6 * of.reach()
@@ -134,8 +134,10 @@ pub fn keep(bytes: &[u8]) {
         }
         Some(Read::Convex(of)) => {
             let gap = reader.number().abs() / 16.0;
-            let Ok(cast) = of.0.query(&of.1).and_then(|cast| cast.keeping(gap)) else { return };
-            let judge = convex_keep::Judge::new(cast);
+            let Ok(cast) = of.0.query(&of.1).and_then(|cast| cast.with_min_gap(gap)) else {
+                return;
+            };
+            let judge = convex_keep::GapJudge::new(cast);
             let outcome = cast.first_contact().unwrap_or_else(|e| panic!("gap {gap:e}: {e}"));
             judge.check(&outcome).unwrap_or_else(|e| panic!("gap {gap:e}: {e}"));
             let clearance = cast.clearance().unwrap_or_else(|e| panic!("gap {gap:e}: {e}"));
@@ -172,7 +174,7 @@ pub fn among(bytes: &[u8]) {
     let (direction, length) = (reader.vector(), reader.number().abs());
     let is_asked = direction.is_finite() && direction != DVec3::ZERO && length.is_finite();
     // Points and segments are not solids, so a scene with both is rejected.
-    let refused = Among::new(moving.at(pose), &obstacles).is_err();
+    let refused = SceneQuery::new(moving.at(pose), &obstacles).is_err();
     if is_asked && !refused && (1e-9..1e9).contains(&direction.length()) {
         among::Setting::of(obstacles, moving, pose, direction, length)
             .examine(&mut Tally::default())

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::file::{Bodies, differences, is_at_limit, numbers, scene, square, vector};
 use super::mutants::{number, with};
-use super::{Claim, Kind, Who};
+use super::{CheckerKind, Claim, Kind};
 use crate::oracle::exact::Ratio;
 use crate::oracle::scene::size;
 use crate::oracle::settings::{Bodies as Convex, FAMILIES, Setting, near_contact, setting};
@@ -17,15 +17,16 @@ use crate::random::Random;
 pub const CASTS: Kind = Kind {
     name: "casts",
     focus: "/statement",
-    base: |seed| cast(seed, false),
+    draw_proof: |seed| cast(seed, false),
     claims,
-    worst,
-    falsehood,
+    to_limits: worst,
+    find_falsehood: falsehood,
     is_marginal,
 };
 
 /// Casts with a minimum gap.
-pub const WITH_GAP: Kind = Kind { name: "casts-with-gap", base: |seed| cast(seed, true), ..CASTS };
+pub const WITH_GAP: Kind =
+    Kind { name: "casts-with-gap", draw_proof: |seed| cast(seed, true), ..CASTS };
 
 /// Maximum number of vertices of both bodies.
 const MOST_VERTICES: usize = 40;
@@ -67,7 +68,7 @@ pub(super) fn drawn(seed: u64) -> Option<(Setting, Convex)> {
         }
         _ => DVec3::ZERO,
     };
-    setting.moving_pose = setting.moving_pose.translated(by).ok()?;
+    setting.moving_pose = setting.moving_pose.translated_by(by).ok()?;
     if random.one_in(4) {
         beside(&mut setting, &bodies, random);
     }
@@ -100,11 +101,11 @@ fn beside(setting: &mut Setting, bodies: &Convex, random: &mut Random) -> Option
     let little = 10.0_f64.powf(-random.range(0.0, 16.0)) * overlap.abs();
     let cast = setting.query(bodies).ok()?;
     let ContactRange::Separated(separated) = cast.contact_range().ok()? else {
-        setting.moving_pose = setting.moving_pose.translated(across * overlap).ok()?;
+        setting.moving_pose = setting.moving_pose.translated_by(across * overlap).ok()?;
         return Some(());
     };
     let toward = separated.certificate.normal * (separated.certificate.margin - little);
-    setting.moving_pose = setting.moving_pose.translated(toward).ok()?;
+    setting.moving_pose = setting.moving_pose.translated_by(toward).ok()?;
     Some(())
 }
 
@@ -112,7 +113,7 @@ fn cast(seed: u64, with_gap: bool) -> Option<String> {
     let (setting, bodies) = drawn(seed)?;
     let mut cast = setting.query(&bodies).ok()?;
     if with_gap {
-        cast = cast.keeping(gap(&cast, &mut Random::stream(seed, &[0x6a9]))).ok()?;
+        cast = cast.with_min_gap(gap(&cast, &mut Random::stream(seed, &[0x6a9]))).ok()?;
     }
     if seed.is_multiple_of(5) && !with_gap {
         let clearance = cast.clearance().ok()?;
@@ -180,7 +181,7 @@ fn claims(file: &Value) -> Vec<Claim> {
             }
             Part::Slide(at) => claim(format!("{at}/overlap"), HUGE, -HUGE, band),
             Part::Separation(at) => {
-                claim(format!("{at}/margin"), bodies.keep.next_up(), HUGE, band);
+                claim(format!("{at}/margin"), bodies.min_gap.next_up(), HUGE, band);
             }
         }
     }
@@ -268,7 +269,7 @@ fn worst(file: &mut Value, random: &mut Random) {
     }
 }
 
-fn falsehood(file: &Value, who: Who) -> Option<String> {
+fn falsehood(file: &Value, who: CheckerKind) -> Option<String> {
     let Some(bodies) = Bodies::read(file) else { return Some("invalid bodies".into()) };
     let Some(d) = bodies.direction else { return Some("missing direction".into()) };
     let parts = parts(file);
@@ -282,11 +283,11 @@ fn falsehood(file: &Value, who: Who) -> Option<String> {
         }
         Part::Slide(at) => {
             let overlap = file.pointer(&format!("{at}/overlap"))?.as_f64()?;
-            false_gap(&bodies, d, bodies.keep, overlap)
+            false_gap(&bodies, d, bodies.min_gap, overlap)
         }
         Part::Separation(at) => {
             let margin = file.pointer(&format!("{at}/margin"))?.as_f64()?;
-            let is_less = margin <= bodies.keep;
+            let is_less = margin <= bodies.min_gap;
             let less = || is_less.then(|| format!("a margin of {margin:e}"));
             let _ = who;
             false_gap(&bodies, d, margin, 0.0).or_else(less)
@@ -313,27 +314,27 @@ pub(super) fn false_gap(bodies: &Bodies, d: DVec3, gap: f64, overlap: f64) -> Op
 
 fn false_contact(bodies: &Bodies, d: DVec3, claim: &Value) -> Option<String> {
     let lower = claim.get("lower")?.as_f64()?;
-    let keep = bodies.keep;
-    if keep == 0.0 {
+    let min_gap = bodies.min_gap;
+    if min_gap == 0.0 {
         if let Some(first) = bodies.first(d)
             && first < Ratio::from_f64(lower)
         {
             return Some(format!("they meet at {:e}, before {lower:e}", first.to_f64()));
         }
-    } else if bodies.least_distance_until(d, lower) < square(keep) {
-        return Some(format!("they are nearer than {keep:e} before {lower:e}"));
+    } else if bodies.least_distance_until(d, lower) < square(min_gap) {
+        return Some(format!("they are nearer than {min_gap:e} before {lower:e}"));
     }
-    let near = |count: f64| keep.max(bodies.noises(count));
+    let near = |count: f64| min_gap.max(bodies.noises(count));
     match claim.get("upper")?.as_f64() {
-        None if keep == 0.0 => {
+        None if min_gap == 0.0 => {
             let overlap = bodies.overlap_of_shadows(d);
             let apart = overlap.to_f64();
             (apart < -bodies.noises(46.0)).then(|| format!("shadows that are {apart:e} apart"))
         }
         None => None,
-        Some(upper) if keep > 8.02 * bodies.noise() => {
+        Some(upper) if min_gap > 8.02 * bodies.noise() => {
             let found = bodies.distance_at(d, upper);
-            let far = found > square(keep);
+            let far = found > square(min_gap);
             far.then(|| format!("they are {:e} apart at {upper:e}", found.sqrt_to_f64()))
         }
         Some(upper) => {
@@ -352,7 +353,7 @@ fn marginal(file: &Value) -> Option<bool> {
     let bodies = Bodies::read(file)?;
     let (d, noise) = (bodies.direction?, bodies.noise());
     let unit = d.normalize_or(DVec3::X);
-    let gap = bodies.keep / noise;
+    let gap = bodies.min_gap / noise;
     let mut near = (7.9..8.1).contains(&gap);
     for part in parts(file) {
         let (at, across) = match &part {
@@ -364,7 +365,7 @@ fn marginal(file: &Value) -> Option<bool> {
         near |= across && is_at_limit(normal.dot(unit));
         // The claim must exceed the gap, and may be smaller than the library requires.
         let margin = file.pointer(&format!("{at}/margin")).and_then(Value::as_f64);
-        near |= margin.is_some_and(|margin| margin - bodies.keep <= BAND * noise);
+        near |= margin.is_some_and(|margin| margin - bodies.min_gap <= BAND * noise);
         if across {
             continue;
         }
@@ -377,7 +378,7 @@ fn marginal(file: &Value) -> Option<bool> {
         let off = mean.reject_from(unit).length() / noise;
         near |= (2.5..3.75).contains(&off) || (43.0..47.0).contains(&off);
         if let Some(upper) = file.pointer(&format!("{at}/upper"))?.as_f64() {
-            near |= ((mean - d * upper).length() - bodies.keep).abs() <= noise;
+            near |= ((mean - d * upper).length() - bodies.min_gap).abs() <= noise;
         }
     }
     Some(near)

@@ -41,13 +41,13 @@ pub fn verify(text: &str) -> Verdict {
 
 /// `check.py` as a process that checks one proof after another.
 #[derive(Debug)]
-pub struct Fractions {
+pub struct RationalChecker {
     child: Child,
     to: ChildStdin,
     from: BufReader<ChildStdout>,
 }
 
-impl Fractions {
+impl RationalChecker {
     /// Starts the checker of this repository with `COLLTRANS_PYTHON`, or `python3`.
     ///
     /// # Errors
@@ -87,7 +87,7 @@ impl Fractions {
     }
 }
 
-impl Drop for Fractions {
+impl Drop for RationalChecker {
     fn drop(&mut self) {
         // An error means that the process has already ended.
         let _ = self.child.kill();

@@ -24,7 +24,7 @@ pub struct Bodies {
     /// The direction, if there is one.
     pub direction: Option<DVec3>,
     /// The minimum gap.
-    pub keep: f64,
+    pub min_gap: f64,
     /// The size `S`.
     pub size: f64,
 }
@@ -61,14 +61,14 @@ impl Bodies {
         }
         let direction = file.pointer("/query/cast/direction").map(vector);
         let direction = direction.map_or(Some(None), |d| d.map(Some))?;
-        let keep = file.pointer("/query/cast/keep").map_or(Some(0.0), Value::as_f64)?;
+        let min_gap = file.pointer("/query/cast/min_gap").map_or(Some(0.0), Value::as_f64)?;
         let size = (size + (origins[1] - origins[0]).length()).max(MIN_MAGNITUDE);
-        Some(Self { points, facets, direction, keep, size })
+        Some(Self { points, facets, direction, min_gap, size })
     }
 
     /// Returns the noise, `32 u (S + g)`.
     pub fn noise(&self) -> f64 {
-        16.0 * f64::EPSILON * (self.size + self.keep)
+        16.0 * f64::EPSILON * (self.size + self.min_gap)
     }
 
     /// Returns an upper bound of `count` noises.

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use colltrans::ProofFile;
-use colltrans::free::{FreeDirections, FreeOptions};
+use colltrans::removal::directions::{FreeDirections, FreeOptions};
 use colltrans::solid::StartOverlap;
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -15,19 +15,19 @@ use serde_json::{Value, json};
 use super::file::{Bodies, indices};
 use super::mutants::with;
 use super::solids::{of_cubes, surface};
-use super::{Claim, Kind, Who};
+use super::{CheckerKind, Claim, Kind};
 use crate::oracle::exact::Ratio;
-use crate::oracle::solids::facets::{Judge, Triangle};
+use crate::oracle::solids::facets::{FacetJudge, Triangle};
 use crate::random::Random;
 
 /// Free directions.
 pub const FREE: Kind = Kind {
     name: "free-directions",
     focus: STATEMENT,
-    base,
+    draw_proof: base,
     claims,
-    worst,
-    falsehood,
+    to_limits: worst,
+    find_falsehood: falsehood,
     is_marginal: |_| false,
 };
 
@@ -53,7 +53,7 @@ fn base(seed: u64) -> Option<String> {
         .with_start_overlap(start)
         .with_depth(random.pick(&[0, 1, 2, 50]))
         .with_looks(random.pick(&[1_000, 30_000]));
-    let free = FreeDirections::of(&a.at(poses[0]), &b.at(poses[1]), options).ok()?;
+    let free = FreeDirections::compute(&a.at(poses[0]), &b.at(poses[1]), options).ok()?;
     let text = ProofFile::of_free_directions(&free, [&[&a], &[&b]]).ok()?.to_json();
     (text.len() < 60_000).then_some(text)
 }
@@ -179,7 +179,7 @@ fn leaves(cells: &[Value]) -> Option<Vec<(Square, &Value)>> {
     stack.is_empty().then_some(found)
 }
 
-fn falsehood(file: &Value, _: Who) -> Option<String> {
+fn falsehood(file: &Value, _: CheckerKind) -> Option<String> {
     let Some(bodies) = shrunk(file).as_ref().and_then(Bodies::read) else {
         return Some("invalid bodies".into());
     };
@@ -210,7 +210,7 @@ fn falsehood(file: &Value, _: Who) -> Option<String> {
 /// Returns the false statement of a cell along one of its directions; `None` if it is true. An undecided cell
 /// claims only the directions that pairs of facets of these bodies block.
 fn false_cell(surfaces: &[Vec<Triangle>; 2], said: &Value, d: DVec3) -> Option<String> {
-    let judge = Judge::new(d);
+    let judge = FacetJudge::new(d);
     // Facets that intersect at the start do not block.
     let blocks = |f: &Triangle, g: &Triangle| {
         let gaps = judge.gaps(f, g);

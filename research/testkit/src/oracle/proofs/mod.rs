@@ -27,7 +27,7 @@ use serde_json::Value;
 
 use crate::random::Random;
 use crate::tally::Tally;
-use checkers::{Fractions, Verdict, verify};
+use checkers::{RationalChecker, Verdict, verify};
 use mutants::{number, with};
 
 /// Number of mutants of each proof that do not depend on its meaning.
@@ -57,7 +57,7 @@ pub struct Claim {
 
 /// The checker that has accepted a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Who {
+pub enum CheckerKind {
     /// The library, which checks everything.
     Library,
     /// `check.py`, which does not check everything.
@@ -72,13 +72,13 @@ pub struct Kind {
     /// The part of the file that most mutants change, as a JSON pointer.
     pub focus: &'static str,
     /// Returns the proof of an answer of the library; `None` if this seed yields none.
-    pub base: fn(u64) -> Option<String>,
+    pub draw_proof: fn(u64) -> Option<String>,
     /// Returns the claims of a proof.
     pub claims: fn(&Value) -> Vec<Claim>,
     /// Worsens a certificate up to the tolerance, or beyond it.
-    pub worst: fn(&mut Value, &mut Random),
+    pub to_limits: fn(&mut Value, &mut Random),
     /// Returns a false claim among those that the checker checks, exactly and from the bodies alone.
-    pub falsehood: fn(&Value, Who) -> Option<String>,
+    pub find_falsehood: fn(&Value, CheckerKind) -> Option<String>,
     /// Checks whether a number is so close to a limit that the library may reject it.
     pub is_marginal: fn(&Value) -> bool,
 }
@@ -110,7 +110,7 @@ pub const COLUMNS: &[&str] =
 pub struct Campaign<'a> {
     kind: &'a Kind,
     /// `check.py`; if `None`, only the library is judged.
-    fractions: Option<&'a mut Fractions>,
+    fractions: Option<&'a mut RationalChecker>,
     tally: &'a mut Tally,
     name: String,
 }
@@ -120,10 +120,10 @@ impl<'a> Campaign<'a> {
     pub fn examine(
         kind: &'a Kind,
         seed: u64,
-        fractions: Option<&'a mut Fractions>,
+        fractions: Option<&'a mut RationalChecker>,
         tally: &'a mut Tally,
     ) {
-        let Some(text) = (kind.base)(seed) else { return };
+        let Some(text) = (kind.draw_proof)(seed) else { return };
         let name = format!("{}:{seed}", kind.name);
         let mut campaign = Self { kind, fractions, tally, name };
         campaign.tally.count("proofs");
@@ -141,14 +141,15 @@ impl<'a> Campaign<'a> {
         campaign.push_one(&file, random);
         for _ in 0..PUSHED {
             let mut worst = file.clone();
-            (kind.worst)(&mut worst, random);
+            (kind.to_limits)(&mut worst, random);
             if random.one_in(3) {
-                (kind.worst)(&mut worst, random);
+                (kind.to_limits)(&mut worst, random);
             }
             campaign.judge(&worst.to_string(), "worst");
             campaign.push_one(&worst, random);
         }
-        let other = (kind.base)(random.bits()).and_then(|text| serde_json::from_str(&text).ok());
+        let other =
+            (kind.draw_proof)(random.bits()).and_then(|text| serde_json::from_str(&text).ok());
         for _ in 0..GRAFTED {
             if let Some(mutant) =
                 other.as_ref().and_then(|other| mutants::graft(&file, other, random))
@@ -234,11 +235,13 @@ impl<'a> Campaign<'a> {
             let line = format!("{name}, {what}: {reason}: {library:?}, {fractions:?}: {text}");
             self.object("disagree", line);
         }
-        for (verdict, who) in [(&library, Who::Library), (&fractions, Who::Fractions)] {
+        for (verdict, who) in
+            [(&library, CheckerKind::Library), (&fractions, CheckerKind::Fractions)]
+        {
             if verdict.accepts() {
                 let unreadable = || Some("the file is not JSON".to_owned());
                 let found =
-                    file.as_ref().map_or_else(unreadable, |f| (self.kind.falsehood)(f, who));
+                    file.as_ref().map_or_else(unreadable, |f| (self.kind.find_falsehood)(f, who));
                 if let Some(why) = found {
                     let line = format!("{name}, {what}: {who:?} accepts: {why}: {text}");
                     self.object("false", line);

@@ -12,7 +12,7 @@ use super::casts::{other_normal, other_pair, other_weights, rounded_cloud};
 use super::checkers::{Verdict, verify};
 use super::file::{body_at, indices, is_at_limit, numbers, vector, vectors};
 use super::mutants::{number, with};
-use super::{Claim, Kind, Who};
+use super::{CheckerKind, Claim, Kind};
 use crate::oracle::distance::distance;
 use crate::oracle::exact::{Ratio, Vector};
 use crate::oracle::motion::{Spin, points_at};
@@ -21,17 +21,24 @@ use crate::random::Random;
 use crate::shapes::random_hull;
 
 /// Motions of convex bodies, with a minimum gap, a tolerated depth, or neither.
-pub const CONVEX: Kind =
-    Kind { name: "motions", focus: CONVEX_PROOF, base, claims, worst, falsehood, is_marginal };
+pub const CONVEX: Kind = Kind {
+    name: "motions",
+    focus: CONVEX_PROOF,
+    draw_proof: base,
+    claims,
+    to_limits: worst,
+    find_falsehood: falsehood,
+    is_marginal,
+};
 
 /// Motions of solids.
 pub const SOLIDS: Kind = Kind {
     name: "solid-motions",
     focus: SOLID_PROOF,
-    base: solid_base,
+    draw_proof: solid_base,
     claims: solid_claims,
-    worst: solid_worst,
-    falsehood: solid_falsehood,
+    to_limits: solid_worst,
+    find_falsehood: solid_falsehood,
     is_marginal,
 };
 
@@ -85,19 +92,24 @@ fn motions(random: &mut Random) -> Option<[Motion; 2]> {
     let way = -start.translation() * random.range(0.0, 2.0);
     let point = random.vector();
     let moving = match random.index(5) {
-        0 => Motion::slide(start, way),
-        1 => Motion::turn(start, point, axis, angle),
-        2 => Motion::thrown(start, start.translation(), way, axis * angle),
-        3 => Motion::through(&[start, around(random, 1.0)?, around(random, far)?]),
-        _ => Motion::about(start, start.translation() - point, axis, angle, way),
+        0 => Motion::translation(start, way),
+        1 => Motion::rotation_about(start, point, axis, angle),
+        2 => Motion::free_flight(start, start.translation(), way, axis * angle),
+        3 => Motion::through_poses(&[start, around(random, 1.0)?, around(random, far)?]),
+        _ => Motion::from_arm_and_axis(start, start.translation() - point, axis, angle, way),
     };
     let fixed = match random.index(4) {
-        0 => {
-            Motion::turn(there, random.vector() * 0.3, random.direction(), random.range(-2.0, 2.0))
-        }
+        0 => Motion::rotation_about(
+            there,
+            random.vector() * 0.3,
+            random.direction(),
+            random.range(-2.0, 2.0),
+        ),
         // Both rotate as one.
-        1 => Motion::about(there, there.translation() - point, axis, angle, DVec3::ZERO),
-        _ => Ok(Motion::still(there)),
+        1 => {
+            Motion::from_arm_and_axis(there, there.translation() - point, axis, angle, DVec3::ZERO)
+        }
+        _ => Ok(Motion::at_rest(there)),
     };
     Some([moving.ok()?, fixed.ok()?])
 }
@@ -109,8 +121,8 @@ fn base(seed: u64) -> Option<String> {
     let cast = MotionCast::new(p.along(&a), q.along(&b)).ok()?;
     let length = 10.0_f64.powf(random.range(-6.0, -0.5));
     let cast = match random.index(4) {
-        0 => cast.keeping(length),
-        1 => cast.tolerating(length),
+        0 => cast.with_min_gap(length),
+        1 => cast.with_tolerance(length),
         _ => Ok(cast),
     };
     let cast = cast.ok()?;
@@ -133,13 +145,13 @@ fn solid_base(seed: u64) -> Option<String> {
     };
     let (p, q) = (solid()?, solid()?);
     let [a, b] = motions(random)?;
-    let mut cast = MotionCast::<Solid>::new(p.along(&a), q.along(&b)).ok()?;
+    let mut cast = MotionCast::<Solid>::new(p.with_motion(&a), q.with_motion(&b)).ok()?;
     if random.one_in(4) {
-        cast = cast.keeping(10.0_f64.powf(random.range(-4.0, -1.0))).ok()?;
+        cast = cast.with_min_gap(10.0_f64.powf(random.range(-4.0, -1.0))).ok()?;
     }
     match random.index(3) {
-        0 => cast = cast.tolerating(1e-3).ok()?,
-        1 => cast = cast.tolerating(0.0).ok()?,
+        0 => cast = cast.with_tolerance(1e-3).ok()?,
+        1 => cast = cast.with_tolerance(0.0).ok()?,
         _ => {}
     }
     let text = ProofFile::with_solid_motion(&cast).ok()?.1.to_json();
@@ -359,13 +371,13 @@ pub(super) fn pose(of: &Value) -> Option<Pose> {
 
 /// Checks whether convex bodies meet, are nearer than a gap, or overlap deeper than tolerated. A negative `by`
 /// weakens the condition slightly, a positive one strengthens it.
-pub(super) fn meets(points: [&[Vector]; 2], keep: f64, by: f64) -> bool {
+pub(super) fn meets(points: [&[Vector]; 2], min_gap: f64, by: f64) -> bool {
     let square = distance(points[0], points[1]).square;
-    if keep < 0.0 {
-        let least = -keep * (1.0 + by * OWN.max(2.0 * f64::EPSILON));
+    if min_gap < 0.0 {
+        let least = -min_gap * (1.0 + by * OWN.max(2.0 * f64::EPSILON));
         return square.is_zero() && depth(points[0], points[1], 1e-12) > squared(least);
     }
-    let most = (keep + by * -1e-30) * (1.0 - by * 2.0 * f64::EPSILON);
+    let most = (min_gap + by * -1e-30) * (1.0 - by * 2.0 * f64::EPSILON);
     square < squared(most.max(0.0)) || square.is_zero()
 }
 
@@ -383,7 +395,7 @@ fn times(named: &[f64], until: f64) -> Vec<f64> {
     all.filter(|time| (0.0..until).contains(time)).collect()
 }
 
-fn falsehood(file: &Value, who: Who) -> Option<String> {
+fn falsehood(file: &Value, who: CheckerKind) -> Option<String> {
     first(found(file, who))
 }
 
@@ -393,8 +405,8 @@ pub(super) fn first(found: Option<Vec<String>>) -> Option<String> {
 }
 
 /// Returns the false statements; `None` if the file is invalid.
-fn found(file: &Value, _: Who) -> Option<Vec<String>> {
-    let keep = file.pointer("/query/motions/0/keep").map_or(Some(0.0), Value::as_f64)?;
+fn found(file: &Value, _: CheckerKind) -> Option<Vec<String>> {
+    let min_gap = file.pointer("/query/motions/0/min_gap").map_or(Some(0.0), Value::as_f64)?;
     let movers = file.pointer("/placement/motions/0")?;
     let body = |k: usize| vectors(body_at(file, &movers[k])?.pointer("/convex/vertices")?);
     let bodies = [body(0)?, body(1)?];
@@ -412,7 +424,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     }
     for (time, ends) in all {
         let at = points(time, ends);
-        if meets([&at[0], &at[1]], keep, 1.0) {
+        if meets([&at[0], &at[1]], min_gap, 1.0) {
             return Some(vec![format!("they meet at {time}, before {reached}")]);
         }
     }
@@ -424,7 +436,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     // A meeting is in the last span.
     let ends = [true, false].map(|ends| {
         let at = points(time, ends);
-        (meets([&at[0], &at[1]], keep, -1.0), at)
+        (meets([&at[0], &at[1]], min_gap, -1.0), at)
     });
     let Some((_, at)) = ends.iter().find(|(meets, _)| *meets) else {
         return Some(vec![format!("they do not meet at {time}")]);
@@ -453,14 +465,14 @@ pub(super) fn depth_is_false(met: &Value, at: [&[Vector]; 2], room: f64) -> Opti
     is_false.then(|| format!("a depth between {lower:e} and {upper:e} of {:e}", deep.sqrt_to_f64()))
 }
 
-fn solid_falsehood(file: &Value, who: Who) -> Option<String> {
+fn solid_falsehood(file: &Value, who: CheckerKind) -> Option<String> {
     first(found_of_solids(file, who))
 }
 
 /// Returns the false statements about the facets of a file, which for the library are those of the shrunk
 /// solids.
-fn found_of_solids(file: &Value, who: Who) -> Option<Vec<String>> {
-    let keep = file.pointer("/query/motions/0/keep").map_or(Some(0.0), Value::as_f64)?;
+fn found_of_solids(file: &Value, who: CheckerKind) -> Option<Vec<String>> {
+    let min_gap = file.pointer("/query/motions/0/min_gap").map_or(Some(0.0), Value::as_f64)?;
     let facets = |k: usize| -> Option<Vec<Vec<DVec3>>> {
         file.pointer(&format!("/statement/motions/0/solids/parts/{k}/corners"))?
             .as_array()?
@@ -479,14 +491,15 @@ fn found_of_solids(file: &Value, who: Who) -> Option<Vec<String>> {
         });
         places[0]
             .iter()
-            .any(|f| places[1].iter().any(|g| near(f, g, keep) && meets([f, g], keep, by)))
+            .any(|f| places[1].iter().any(|g| near(f, g, min_gap) && meets([f, g], min_gap, by)))
     };
     let spans = file.pointer(&format!("{SOLID_PROOF}/spans"))?.as_array()?;
     let reached = spans.last().map_or(Some(0.0), |span| span.get("until")?.as_f64())?;
     if !apart {
         // check.py makes no statement about solids that overlap at the start.
-        let said =
-            who == Who::Library && !crosses(0.0, false, 1.0) && start.get("facets").is_some();
+        let said = who == CheckerKind::Library
+            && !crosses(0.0, false, 1.0)
+            && start.get("facets").is_some();
         let what = said.then(|| "facets do not cross at the beginning".to_owned());
         return Some(what.into_iter().collect());
     }
@@ -506,20 +519,20 @@ fn found_of_solids(file: &Value, who: Who) -> Option<Vec<String>> {
     let pair = [bodies[0].get(f)?, bodies[1].get(g)?];
     let is_met = [true, false].into_iter().any(|ends| {
         let at = [0, 1].map(|k| moves[k].at(pair[k], time, ends));
-        meets([&at[0], &at[1]], keep, -1.0)
+        meets([&at[0], &at[1]], min_gap, -1.0)
     });
     let what = (!is_met).then(|| format!("the facets do not meet at {time}"));
     Some(what.into_iter().collect())
 }
 
 /// Checks whether facets may be within a gap, by their boxes.
-fn near(f: &[Vector], g: &[Vector], keep: f64) -> bool {
+fn near(f: &[Vector], g: &[Vector], min_gap: f64) -> bool {
     let bounds = |points: &[Vector]| {
         let all = points.iter().map(Vector::to_f64);
         all.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
     };
     let ([a, b], [c, d]) = (bounds(f), bounds(g));
-    let more = DVec3::splat(keep.max(0.0) + 1e-9);
+    let more = DVec3::splat(min_gap.max(0.0) + 1e-9);
     (a - more).cmple(d).all() && (c - more).cmple(b).all()
 }
 

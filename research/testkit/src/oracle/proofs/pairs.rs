@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::casts::{BAND, HUGE, drawn, other_normal, other_pair, other_weights, put};
 use super::file::{Bodies, differences, indices, is_at_limit, numbers, square, vector, vectors};
 use super::mutants::with;
-use super::{Claim, Kind, Who};
+use super::{CheckerKind, Claim, Kind};
 use crate::oracle::exact::{Dyadic, Ratio, Vector};
 use crate::oracle::nearest::depth;
 use crate::random::Random;
@@ -16,15 +16,15 @@ use crate::random::Random;
 pub const DISTANCES: Kind = Kind {
     name: "distances",
     focus: "/statement",
-    base: distance,
+    draw_proof: distance,
     claims,
-    worst,
-    falsehood,
+    to_limits: worst,
+    find_falsehood: falsehood,
     is_marginal,
 };
 
 /// Depths.
-pub const DEPTHS: Kind = Kind { name: "depths", base: deep, ..DISTANCES };
+pub const DEPTHS: Kind = Kind { name: "depths", draw_proof: deep, ..DISTANCES };
 
 /// Maximum number of vertices of both bodies for which a depth is computed exactly.
 const MOST_DEEP: usize = 20;
@@ -58,7 +58,7 @@ fn deep(seed: u64) -> Option<String> {
         let q = setting.fixed_pose.transform_point(center(bodies.fixed.vertices()));
         let size = bodies.fixed.bounds_size() * 0.4;
         let by = q - p + random.direction() * (size * random.range(0.0, 1.0));
-        setting.moving_pose = setting.moving_pose.translated(by).ok()?;
+        setting.moving_pose = setting.moving_pose.translated_by(by).ok()?;
     }
     let (p, q) = (setting.moving_pose, setting.fixed_pose);
     let pair = Pair::new(bodies.moving.at(p), bodies.fixed.at(q)).ok()?;
@@ -156,7 +156,7 @@ fn worst(file: &mut Value, random: &mut Random) {
     }
 }
 
-fn falsehood(file: &Value, _: Who) -> Option<String> {
+fn falsehood(file: &Value, _: CheckerKind) -> Option<String> {
     let Some(bodies) = Bodies::read(file) else { return Some("invalid bodies".into()) };
     let at = |at: &str, name: &str| file.pointer(&format!("{at}/{name}")).and_then(Value::as_f64);
     let (gap, near) = (at(GAP, "gap"), at(NEAR, "distance"));

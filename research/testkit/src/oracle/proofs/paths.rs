@@ -1,6 +1,6 @@
 //! Proofs of paths of joints, judged at some positions of each row.
 
-use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast, Place};
+use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathPlace};
 use colltrans::{Pose, ProofFile, Solid};
 use glam::DVec3;
 use serde_json::Value;
@@ -11,14 +11,21 @@ use super::motions::{
     body, depth_is_false, first, is_at_the_limit, meets, met, pose, refused_for_rounding,
 };
 use super::mutants::{number, pointers, with};
-use super::{Claim, Kind, Who};
+use super::{CheckerKind, Claim, Kind};
 use crate::oracle::exact::Vector;
 use crate::oracle::motion::{Stage, points_carried};
 use crate::random::Random;
 
 /// Paths of a few joints and bodies.
-pub const PATHS: Kind =
-    Kind { name: "paths", focus: PROOF, base, claims, worst, falsehood, is_marginal };
+pub const PATHS: Kind = Kind {
+    name: "paths",
+    focus: PROOF,
+    draw_proof: base,
+    claims,
+    to_limits: worst,
+    find_falsehood: falsehood,
+    is_marginal,
+};
 
 /// The pointer to the proof.
 const PROOF: &str = "/statement/path/proof";
@@ -44,7 +51,7 @@ fn base(seed: u64) -> Option<String> {
     let mechanism = Mechanism::new(frames).ok()?;
     let rows = random.pick(&[1, 2, 2, 3]);
     let most = random.pick(&[0.3, 2.0]);
-    let mut row: Vec<f64> = (0..mechanism.joints()).map(|_| random.range(-1.0, 1.0)).collect();
+    let mut row: Vec<f64> = (0..mechanism.joint_count()).map(|_| random.range(-1.0, 1.0)).collect();
     let mut all = Vec::new();
     for _ in 0..rows {
         all.push(row.clone());
@@ -52,7 +59,7 @@ fn base(seed: u64) -> Option<String> {
             *value += random.range(-most, most);
         }
     }
-    let path = JointPath::evenly(all).ok()?;
+    let path = JointPath::at_unit_times(all).ok()?;
     let solid = random.one_in(4).then(|| Solid::from_convex(&body(random))).transpose().ok()?;
     let convex = [body(random), body(random), body(random)];
     let mut bodies = Vec::new();
@@ -65,13 +72,13 @@ fn base(seed: u64) -> Option<String> {
     if let Some(solid) = &solid {
         let pose =
             Pose::new(random.rotation(), random.direction() * random.range(0.7, 2.0)).ok()?;
-        bodies.push(PathBody::standing(solid.at(pose)));
+        bodies.push(PathBody::at_rest(solid.at(pose)));
     }
     let mut pairs = vec![[0, 2], [1, 2]];
     pairs.extend(solid.is_some().then_some([0, 3]));
     let cast = PathCast::new(&mechanism, &path, bodies, pairs).ok()?;
-    let keep = 10.0_f64.powf(random.range(-5.0, -1.0));
-    let cast = if random.one_in(3) { cast.keeping(keep) } else { Ok(cast) }.ok()?;
+    let min_gap = 10.0_f64.powf(random.range(-5.0, -1.0));
+    let cast = if random.one_in(3) { cast.with_min_gap(min_gap) } else { Ok(cast) }.ok()?;
     let (_, file) = ProofFile::with_path(&cast, &[]).ok()?;
     let text = file.to_json();
     (text.len() < 20_000).then_some(text)
@@ -170,7 +177,7 @@ struct Path {
     rows: Vec<Vec<f64>>,
     frames: Vec<Framed>,
     bodies: Vec<(String, Option<usize>, Pose, Vec<DVec3>)>,
-    keep: f64,
+    min_gap: f64,
 }
 
 impl Path {
@@ -202,12 +209,12 @@ impl Path {
         };
         let links = file.pointer("/placement/robot/bodies")?.as_array()?;
         let bodies = links.iter().map(body).collect::<Option<_>>()?;
-        let keep = file.pointer("/query/path/keep").map_or(Some(0.0), Value::as_f64)?;
-        Some(Self { times, rows, frames, bodies, keep })
+        let min_gap = file.pointer("/query/path/min_gap").map_or(Some(0.0), Value::as_f64)?;
+        Some(Self { times, rows, frames, bodies, min_gap })
     }
 
     /// Returns the points of a convex body at a position of the path.
-    fn points(&self, name: &str, Place { row, share }: Place) -> Option<Vec<Vector>> {
+    fn points(&self, name: &str, PathPlace { row, share }: PathPlace) -> Option<Vec<Vector>> {
         let (_, frame, pose, points) = self.bodies.iter().find(|of| of.0 == name)?;
         let next = self.rows.get(row + 1).unwrap_or(&self.rows[row]);
         let (mut stages, mut at) = (Vec::new(), *frame);
@@ -224,41 +231,41 @@ impl Path {
         Some(points_carried(points, pose, &stages, share))
     }
 
-    fn time(&self, Place { row, share }: Place) -> f64 {
+    fn time(&self, PathPlace { row, share }: PathPlace) -> f64 {
         let next = self.times.get(row + 1).unwrap_or(&self.times[row]);
         self.times[row] + share * (next - self.times[row])
     }
 
     /// Returns positions before a time, and the end of the path if `ends`.
-    fn places(&self, until: f64, ends: bool) -> Vec<Place> {
+    fn places(&self, until: f64, ends: bool) -> Vec<PathPlace> {
         let rows = self.rows.len() - 1;
         let within = |row: usize| {
             (0..PLACES)
                 .map(move |k| (k as f64 + 0.3) / PLACES as f64 - 0.075)
-                .map(move |share| Place { row, share })
+                .map(move |share| PathPlace { row, share })
         };
-        let mut all: Vec<Place> = (0..rows).flat_map(within).collect();
-        all.extend((0..rows).map(|row| Place { row, share: 0.0 }));
+        let mut all: Vec<PathPlace> = (0..rows).flat_map(within).collect();
+        all.extend((0..rows).map(|row| PathPlace { row, share: 0.0 }));
         // A position just before the time.
         let row = self.times.partition_point(|time| *time < until).saturating_sub(1);
         if row < rows {
             let share = (until - self.times[row]) / (self.times[row + 1] - self.times[row]);
-            all.push(Place { row, share: (share - 1e-13).clamp(0.0, 1.0) });
+            all.push(PathPlace { row, share: (share - 1e-13).clamp(0.0, 1.0) });
         }
         all.retain(|place| self.time(*place) < until);
         if ends {
-            all.push(Place { row: rows, share: 0.0 });
+            all.push(PathPlace { row: rows, share: 0.0 });
         }
         all
     }
 }
 
-fn falsehood(file: &Value, who: Who) -> Option<String> {
+fn falsehood(file: &Value, who: CheckerKind) -> Option<String> {
     first(false_statements(file, who))
 }
 
 /// Returns the false statements; `None` if the file is invalid.
-fn false_statements(file: &Value, _: Who) -> Option<Vec<String>> {
+fn false_statements(file: &Value, _: CheckerKind) -> Option<Vec<String>> {
     let path = Path::read(file)?;
     let lower = file.pointer("/statement/path/lower")?.as_f64()?;
     let upper = file.pointer("/statement/path/upper")?.as_f64();
@@ -279,7 +286,7 @@ fn false_statements(file: &Value, _: Who) -> Option<Vec<String>> {
         let [a, b] = names(pair)?;
         for place in path.places(lower, whole) {
             let (p, q) = (path.points(&a, place)?, path.points(&b, place)?);
-            if meets([&p, &q], path.keep, 1.0) {
+            if meets([&p, &q], path.min_gap, 1.0) {
                 return Some(vec![format!("{a} and {b} meet at {place:?}, before {lower}")]);
             }
         }
@@ -290,7 +297,8 @@ fn false_statements(file: &Value, _: Who) -> Option<Vec<String>> {
     }
     let [a, b] = names(pairs.get(meeting.get("pair")?.as_u64()? as usize)?)?;
     let at = meeting.get("place")?;
-    let place = Place { row: at.get("row")?.as_u64()? as usize, share: at.get("share")?.as_f64()? };
+    let place =
+        PathPlace { row: at.get("row")?.as_u64()? as usize, share: at.get("share")?.as_f64()? };
     if place.row >= path.rows.len() {
         return None;
     }
@@ -298,7 +306,7 @@ fn false_statements(file: &Value, _: Who) -> Option<Vec<String>> {
         return Some(vec![format!("they meet at {place:?}, after {upper}")]);
     }
     let (p, q) = (path.points(&a, place)?, path.points(&b, place)?);
-    if !meets([&p, &q], path.keep, -1.0) {
+    if !meets([&p, &q], path.min_gap, -1.0) {
         return Some(vec![format!("{a} and {b} do not meet at {place:?}")]);
     }
     // A depth of pieces of solids refers to the pieces.

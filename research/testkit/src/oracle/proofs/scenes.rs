@@ -1,6 +1,6 @@
 //! Proofs of scene queries of convex bodies, judged for each obstacle.
 
-use colltrans::{Among, ConvexPolyhedron, Obstacles, Pose, ProofFile};
+use colltrans::{ConvexPolyhedron, Obstacles, Pose, ProofFile, SceneQuery};
 use glam::DVec3;
 use serde_json::Value;
 
@@ -9,15 +9,22 @@ use super::checkers::{Verdict, verify};
 use super::file::{Bodies, body_at, is_at_limit, numbers, vector, vectors};
 use super::motions::{body, first, is_at_the_limit, pose, refused_for_rounding};
 use super::mutants::{number, pointers, with};
-use super::{Claim, Kind, Who};
+use super::{CheckerKind, Claim, Kind};
 use crate::oracle::exact::{Ratio, place};
 use crate::oracle::nearest::depth;
 use crate::random::Random;
 use crate::shapes::reach;
 
 /// The nearest obstacle, the obstacles within a length, and the clearance.
-pub const SCENES: Kind =
-    Kind { name: "scenes", focus: "/statement", base, claims, worst, falsehood, is_marginal };
+pub const SCENES: Kind = Kind {
+    name: "scenes",
+    focus: "/statement",
+    draw_proof: base,
+    claims,
+    to_limits: worst,
+    find_falsehood: falsehood,
+    is_marginal,
+};
 
 /// Tolerance in noises of a bound at an obstacle that is passed, which decides about sliding or being behind.
 const PASSED: f64 = 300.0;
@@ -32,11 +39,11 @@ fn base(seed: u64) -> Option<String> {
         room.insert(bodies[random.index(2)].clone(), Pose::new(turn, at).ok()?);
     }
     let at = Pose::new(random.rotation(), random.vector() * 2.0).ok()?;
-    let mut asked = Among::new(bodies[0].at(at), &room).ok()?;
+    let mut asked = SceneQuery::new(bodies[0].at(at), &room).ok()?;
     if random.one_in(4) {
-        let keep = 10.0_f64.powf(random.range(-6.0, -0.5));
-        asked = asked.with_options(asked.options().with_keep(keep)).ok()?;
-        asked = asked.with_solid_options(asked.solid_options().with_keep(keep));
+        let min_gap = 10.0_f64.powf(random.range(-6.0, -0.5));
+        asked = asked.with_options(asked.options().with_min_gap(min_gap)).ok()?;
+        asked = asked.with_solid_options(asked.solid_options().with_min_gap(min_gap));
     }
     let file = match random.index(4) {
         0 => ProofFile::of_nearest(&asked).ok()??,
@@ -198,7 +205,7 @@ fn read_pairs(file: &Value) -> Option<Vec<Bodies>> {
         return None;
     };
     let (p, reach, origin) = placed(moving)?;
-    let keep = file.pointer("/query/scene/keep").map_or(Some(0.0), Value::as_f64)?;
+    let min_gap = file.pointer("/query/scene/min_gap").map_or(Some(0.0), Value::as_f64)?;
     let direction = match file.pointer("/statement/scene_clearance/direction") {
         Some(direction) => Some(vector(direction)?),
         None => None,
@@ -210,14 +217,14 @@ fn read_pairs(file: &Value) -> Option<Vec<Bodies>> {
             points: [p.clone(), q],
             facets: [Vec::new(), Vec::new()],
             direction,
-            keep,
+            min_gap,
             size,
         })
     };
     obstacles.iter().map(of).collect()
 }
 
-fn falsehood(file: &Value, who: Who) -> Option<String> {
+fn falsehood(file: &Value, who: CheckerKind) -> Option<String> {
     first(found(file, who))
 }
 
@@ -226,7 +233,7 @@ fn exact_square(x: f64) -> Ratio {
 }
 
 /// Returns the false statements; `None` if the file is invalid.
-fn found(file: &Value, _: Who) -> Option<Vec<String>> {
+fn found(file: &Value, _: CheckerKind) -> Option<Vec<String>> {
     let all = read_pairs(file)?;
     let at = |k: &Value| all.get(k.as_u64()? as usize);
     let near = |of: &Value| of.pointer("/convex/distance").and_then(Value::as_f64);
@@ -274,7 +281,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
         stop.and_then(claim).is_some_and(|of| of.pointer("/convex/overlapping").is_some());
     if lower == 0.0 && overlapping {
         let pair = all.get(stop?)?;
-        let what = (pair.distance() > exact_square(pair.keep)).then(|| "no overlap".to_owned());
+        let what = (pair.distance() > exact_square(pair.min_gap)).then(|| "no overlap".to_owned());
         return Some(what.into_iter().collect());
     }
     for (k, pair) in all.iter().enumerate() {
@@ -289,7 +296,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     let Some(stop) = stop else { return Some(Vec::new()) };
     let pair = all.get(stop)?;
     let upper = claim(stop)?.pointer("/convex/blocked/contact/certificate/upper")?.as_f64()?;
-    let allowed = pair.keep.max(pair.noises(3.06));
+    let allowed = pair.min_gap.max(pair.noises(3.06));
     let met = pair.least_distance_until(d, upper) <= exact_square(allowed);
     let what = (!met).then(|| format!("obstacle {stop} does not stop the body by {upper}"));
     Some(what.into_iter().collect())
@@ -305,8 +312,8 @@ fn swept_meets(pair: &Bodies, d: DVec3, until: f64, allowed: f64) -> bool {
     let by = crate::oracle::exact::Vector::new(d).times(&crate::oracle::exact::Dyadic::new(until));
     swept.extend(pair.points[0].iter().map(|p| p.plus(&by)));
     let square = crate::oracle::distance::distance(&swept, &pair.points[1]).square;
-    if pair.keep > 0.0 {
-        return square < exact_square((pair.keep * (1.0 - f64::EPSILON) - allowed).max(0.0));
+    if pair.min_gap > 0.0 {
+        return square < exact_square((pair.min_gap * (1.0 - f64::EPSILON) - allowed).max(0.0));
     }
     square.is_zero()
         && (allowed == 0.0 || depth(&swept, &pair.points[1], pair.noise()) > exact_square(allowed))

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::casts::{BAND, HUGE, false_gap, first_of, other_normal, other_weights, put};
 use super::file::{Bodies, is_at_limit, numbers, square, vector};
 use super::mutants::with;
-use super::{Claim, Kind, Who};
+use super::{CheckerKind, Claim, Kind};
 use crate::oracle::exact::{Ratio, Vector};
 use crate::oracle::solids::facets::rule;
 use crate::oracle::solids::{nearest, settings};
@@ -18,15 +18,15 @@ use crate::random::Random;
 pub const CLEARANCES: Kind = Kind {
     name: "solid-clearances",
     focus: "/statement",
-    base: clearance,
+    draw_proof: clearance,
     claims,
-    worst,
-    falsehood,
+    to_limits: worst,
+    find_falsehood: falsehood,
     is_marginal,
 };
 
 /// Distances.
-pub const DISTANCES: Kind = Kind { name: "solid-distances", base: distance, ..CLEARANCES };
+pub const DISTANCES: Kind = Kind { name: "solid-distances", draw_proof: distance, ..CLEARANCES };
 
 const STOP: &str = "/statement/clearance/stop/translation";
 const CERTIFICATE: &str = "/statement/clearance/certificate";
@@ -49,7 +49,7 @@ pub(super) fn of_cubes(seed: u64) -> Option<([Solid; 2], [colltrans::Pose; 2], D
     if random.one_in(3) {
         let far = setting.direction.normalize() * -(10.0_f64.powf(random.range(0.0, 9.0)));
         let aside = setting.direction.normalize().any_orthonormal_vector() * random.range(0.0, 9.0);
-        poses[0] = poses[0].translated(far + aside).ok()?;
+        poses[0] = poses[0].translated_by(far + aside).ok()?;
     }
     if a.triangles().len() + b.triangles().len() > MOST_FACETS {
         return None;
@@ -92,7 +92,7 @@ fn claims(file: &Value) -> Vec<Claim> {
     let all = [
         (format!("{STOP}/lower"), -HUGE, HUGE, band / length),
         (format!("{STOP}/upper"), HUGE, -HUGE, band / length),
-        (format!("{SEPARATION}/margin"), bodies.keep.next_up(), HUGE, band),
+        (format!("{SEPARATION}/margin"), bodies.min_gap.next_up(), HUGE, band),
         (format!("{CERTIFICATE}/lower"), 0.0, HUGE, band / length),
         (format!("{DISTANCE}/lower"), 0.0, HUGE, band),
         (format!("{POINTS}/distance"), HUGE, 0.0, band),
@@ -132,7 +132,7 @@ fn worst(file: &mut Value, random: &mut Random) {
     }
 }
 
-fn falsehood(file: &Value, who: Who) -> Option<String> {
+fn falsehood(file: &Value, who: CheckerKind) -> Option<String> {
     let Some(bodies) = Bodies::read(file) else { return Some("invalid bodies".into()) };
     if file.pointer(DISTANCE).is_some_and(Value::is_object) {
         return false_distance(&bodies, file, who);
@@ -144,7 +144,7 @@ pub(super) fn surface(bodies: &Bodies, body: usize) -> Vec<[Vector; 3]> {
     (0..bodies.facets[body].len()).filter_map(|k| bodies.facet(body, k)).collect()
 }
 
-fn false_distance(bodies: &Bodies, file: &Value, who: Who) -> Option<String> {
+fn false_distance(bodies: &Bodies, file: &Value, who: CheckerKind) -> Option<String> {
     let at = |at: String| file.pointer(&at).and_then(Value::as_f64);
     let truth = nearest::surfaces(&[surface(bodies, 0), surface(bodies, 1)]);
     let say = |what: &str, x: f64| Some(format!("{what} {x:e} of {:e}", truth.sqrt_to_f64()));
@@ -154,13 +154,13 @@ fn false_distance(bodies: &Bodies, file: &Value, who: Who) -> Option<String> {
         return say("points within", near);
     }
     let lower = at(format!("{DISTANCE}/lower"))?;
-    if lower < 0.0 || who == Who::Library && square(lower) > truth {
+    if lower < 0.0 || who == CheckerKind::Library && square(lower) > truth {
         return say("a distance of at least", lower);
     }
     None
 }
 
-fn false_clearance(bodies: &Bodies, file: &Value, who: Who) -> Option<String> {
+fn false_clearance(bodies: &Bodies, file: &Value, who: CheckerKind) -> Option<String> {
     let at = |at: String| file.pointer(&at).and_then(Value::as_f64);
     let d = bodies.direction?;
     let shrunk = at(format!("{CERTIFICATE}/tolerance")) != Some(0.0);
@@ -170,7 +170,7 @@ fn false_clearance(bodies: &Bodies, file: &Value, who: Who) -> Option<String> {
     {
         return Some(why);
     }
-    if shrunk || bodies.keep > 0.0 {
+    if shrunk || bodies.min_gap > 0.0 {
         return None;
     }
     let bounds = [at(format!("{STOP}/lower")), at(format!("{STOP}/upper"))];
@@ -181,7 +181,7 @@ fn false_clearance(bodies: &Bodies, file: &Value, who: Who) -> Option<String> {
         let (f, g) = (bodies.facet(0, f)?, bodies.facet(1, g)?);
         let Some(met) = first_of([&f, &g], d) else { return Some("facets that never meet".into()) };
         let zero = Ratio::from_f64(0.0);
-        let met = if who == Who::Library && met < zero { zero } else { met };
+        let met = if who == CheckerKind::Library && met < zero { zero } else { met };
         let is_outside = bounds[0].is_some_and(|lower| met < Ratio::from_f64(lower))
             || bounds[1].is_some_and(|upper| met > Ratio::from_f64(upper));
         if is_outside {
@@ -189,7 +189,7 @@ fn false_clearance(bodies: &Bodies, file: &Value, who: Who) -> Option<String> {
         }
     }
     let starts_apart = file.pointer(&format!("{CERTIFICATE}/start/apart")).is_some();
-    if who == Who::Library && starts_apart {
+    if who == CheckerKind::Library && starts_apart {
         let lower = at(format!("{CERTIFICATE}/lower"));
         let truth = rule(&surface(bodies, 0), &surface(bodies, 1), d).stop;
         return match (lower, truth) {

@@ -226,7 +226,7 @@ pub fn near_contact(setting: &Setting, bodies: &Bodies, random: &mut Random) -> 
             6 => 0.0,
             _ => -gap,
         };
-    setting.moving_pose.translated(way - back).ok()
+    setting.moving_pose.translated_by(way - back).ok()
 }
 
 /// Draws the setting of a family with a seed. Half of them are rotated as a whole. For some the direction is

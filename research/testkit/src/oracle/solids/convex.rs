@@ -5,7 +5,7 @@ use colltrans::solid::SolidCast;
 use colltrans::{Bounded, Cast, Clearance, ContactRange, Outcome, Solid};
 
 use super::facets::{rule, triangles};
-use super::settings::Seen;
+use super::settings::MotionOutcome;
 use super::{encloses, exactly};
 use crate::oracle::exact::Ratio;
 use crate::oracle::scene::size;
@@ -20,7 +20,7 @@ const AGREEMENT: f64 = 512.0;
 ///
 /// # Errors
 /// A description of the first disagreement.
-pub fn as_solids(setting: &Setting) -> Result<Option<Seen>, String> {
+pub fn as_solids(setting: &Setting) -> Result<Option<MotionOutcome>, String> {
     let bodies = setting.bodies().map_err(|e| e.to_string())?;
     setting.judge_bodies(&bodies).map_err(|e| e.to_string())?;
     let (p, q) = (&bodies.moving, &bodies.fixed);
@@ -127,16 +127,16 @@ fn against_core(
     overlaps: bool,
     found: Option<&Clearance<Solid>>,
     limits: &Limits,
-) -> Result<Option<Seen>, String> {
+) -> Result<Option<MotionOutcome>, String> {
     let distance = match found {
         Some(Clearance::Blocked { distance, .. }) => Some(*distance),
         _ => None,
     };
     let seen = match (overlaps, distance) {
-        (true, _) => Seen::Overlapping,
-        (false, None) => Seen::Free,
-        (false, Some(0.0)) => Seen::BlockedNow,
-        (false, Some(_)) => Seen::Blocked,
+        (true, _) => MotionOutcome::Overlapping,
+        (false, None) => MotionOutcome::Free,
+        (false, Some(0.0)) => MotionOutcome::BlockedNow,
+        (false, Some(_)) => MotionOutcome::Blocked,
     };
     let wrong = || Err(format!("{seen:?} at {distance:?}, but the core says {core:?}"));
     match core {

@@ -39,7 +39,7 @@ pub fn triangles(
 
 /// Applies the rule to bodies that do not overlap.
 pub fn rule(moving: &[Triangle], fixed: &[Triangle], direction: DVec3) -> Rule {
-    let judge = Judge::new(direction);
+    let judge = FacetJudge::new(direction);
     let mut rule = Rule::default();
     for f in moving {
         for g in fixed {
@@ -65,7 +65,7 @@ pub fn rule(moving: &[Triangle], fixed: &[Triangle], direction: DVec3) -> Rule {
 }
 
 /// Evaluates pairs of facets along a direction.
-pub struct Judge {
+pub struct FacetJudge {
     direction: Vector,
     plane: Plane,
 }
@@ -89,7 +89,7 @@ impl Gaps {
     }
 }
 
-impl Judge {
+impl FacetJudge {
     /// Builds the judge of a direction.
     pub fn new(direction: DVec3) -> Self {
         Self::along(Vector::new(direction))

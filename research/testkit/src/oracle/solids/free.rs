@@ -9,14 +9,14 @@ mod alike;
 mod bodies;
 pub mod thin;
 
-use colltrans::free::{
+use colltrans::removal::directions::{
     CellBlocker, CellProof, DirectionCell, FreeDirections, FreeError, FreeOptions, Verdict,
 };
 use colltrans::solid::{SolidCast, StartOverlap};
 use colltrans::{Cast, Placed, Pose, Solid};
 use glam::DVec3;
 
-use super::facets::{Judge, Triangle, triangles};
+use super::facets::{FacetJudge, Triangle, triangles};
 use crate::random::Random;
 use crate::tally::Tally;
 pub use bodies::FAMILIES;
@@ -65,7 +65,7 @@ pub fn examine(family: &str, seed: u64, count: u64, tally: &mut Tally) -> Result
     let tolerance = if seed % 8 < 6 { 0.0 } else { 0.03125 };
     let options =
         FreeOptions::DEFAULT.with_tolerance(tolerance).with_start_overlap(start).with_looks(LOOKS);
-    let all = match FreeDirections::of(&a.at(p), &b.at(q), options) {
+    let all = match FreeDirections::compute(&a.at(p), &b.at(q), options) {
         Err(FreeError::Overlapping { .. }) => {
             tally.count("overlapping");
             return Ok(());
@@ -107,7 +107,7 @@ fn compare_along(
     let in_fractions = (PAIRS / (pairs[0] * pairs[1])).max(1) as u64;
     for k in 0..count {
         let d = direction(all, rng);
-        let says = all.says(d).map_err(|e| e.to_string())?;
+        let says = all.classify(d).map_err(|e| e.to_string())?;
         let free = by_cast(bodies, options, d)?;
         if let Some(facets) = facets.as_ref().filter(|_| k < in_fractions) {
             tally.count("fractions");
@@ -147,11 +147,11 @@ fn changed_cells(
         for _ in 0..rng.int(0, 6) {
             cell = cell.quarters()[rng.int(0, 3) as usize];
         }
-        let Some(pair) = blocker.covering(&cell) else { continue };
+        let Some(pair) = blocker.blocking_pair(&cell) else { continue };
         for k in 0..count as usize {
             let (side, mut other) = (k % 2, pair);
             other[side] = rng.int(0, bodies[side].triangles().len() as i64) as u32;
-            if !blocker.blocks(&cell, other) {
+            if !blocker.is_blocked_by(&cell, other) {
                 refused += 1;
             } else if by_cast([bodies[0].at(p), bodies[1].at(q)], options, cell.center())? {
                 return Err(format!("{other:?} are said to block {cell:?}, but a cast is free"));
@@ -183,10 +183,10 @@ fn by_cast([a, b]: [Placed<'_, Solid>; 2], options: FreeOptions, d: DVec3) -> Re
 
 /// Checks whether no pair of facets blocks a direction, in rational arithmetic.
 fn is_free(facets: &[Vec<Triangle>; 2], d: DVec3) -> bool {
-    is_free_along(facets, &Judge::new(d))
+    is_free_along(facets, &FacetJudge::new(d))
 }
 
-fn is_free_along([moving, fixed]: &[Vec<Triangle>; 2], judge: &Judge) -> bool {
+fn is_free_along([moving, fixed]: &[Vec<Triangle>; 2], judge: &FacetJudge) -> bool {
     let blocks = |f: &Triangle| fixed.iter().any(|g| judge.gaps(f, g).contribution().is_some());
     !moving.iter().any(blocks)
 }
@@ -242,7 +242,7 @@ fn check_changed_proofs(
             Ok(same) => {
                 for _ in 0..4 {
                     let d = direction(all, rng);
-                    match (same.says(d), all.says(d)) {
+                    match (same.classify(d), all.classify(d)) {
                         (Ok(Verdict::Free), Ok(Verdict::Blocked(_)))
                         | (Ok(Verdict::Blocked(_)), Ok(Verdict::Free)) => {
                             return Err(format!("a changed proof was accepted: {d:?}"));

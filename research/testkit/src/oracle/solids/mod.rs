@@ -4,14 +4,14 @@
 //!   squares ([`squares`], [`sheets`]).
 //! - The rule over all pairs of facets in exact arithmetic ([`facets`]), and proofs in rational arithmetic
 //!   ([`proof`]).
-//! - Distances over all pairs of facets ([`nearest`]), casts with a minimum gap ([`keep`]), free directions
+//! - Distances over all pairs of facets ([`nearest`]), casts with a minimum gap ([`min_gap`]), free directions
 //!   ([`free`]), first contacts of rotating solids ([`turning`]), and settings with many ties ([`settings`]).
 
 pub mod cells;
 mod convex;
 pub mod facets;
 pub mod free;
-pub mod keep;
+pub mod min_gap;
 pub mod nearest;
 pub mod proof;
 pub mod settings;
@@ -25,7 +25,7 @@ use glam::DVec3;
 
 use crate::oracle::exact::Ratio;
 pub use convex::as_solids;
-pub use settings::Seen;
+pub use settings::MotionOutcome;
 
 /// Builds the cast of two solids without a tolerance.
 pub(crate) fn exactly(

@@ -32,7 +32,7 @@ pub const MESHES: [&str; 4] = ["balls", "hollow", "thin", "mixed"];
 
 /// The outcome, for statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Seen {
+pub enum DistanceOutcome {
     /// The surfaces have a common point.
     Touching,
     /// One body is inside the other.
@@ -65,7 +65,8 @@ impl Setting {
 
     /// Leaves the setting, increases the distance, or brings the bodies to a very small distance.
     fn displaced(mut self, random: &mut Random) -> Result<Self, String> {
-        let size = self.solids.iter().map(|s| s.bounds().size().length()).fold(0.0, f64::max);
+        let size =
+            self.solids.iter().map(|s| s.bounds().side_lengths().length()).fold(0.0, f64::max);
         let little = [1e-15, 1e-13, 1e-10, 1e-7, 1e-3];
         let by = match random.int(0, 5) {
             0 => 0.0,
@@ -103,7 +104,7 @@ impl Setting {
     ///
     /// # Errors
     /// A description of the first disagreement.
-    pub fn examine(&self) -> Result<Seen, String> {
+    pub fn examine(&self) -> Result<DistanceOutcome, String> {
         let pair = self.pair()?;
         let placed = [0, 1].map(|k| {
             let (solid, pose) = (&self.solids[k], &self.poses[k]);
@@ -132,10 +133,10 @@ impl Setting {
         }
         let size = noise / (16.0 * f64::EPSILON);
         Ok(match (inside, right.is_zero()) {
-            (true, _) => Seen::Inside,
-            (_, true) => Seen::Touching,
-            _ if length < 1e-6 * size => Seen::Near,
-            _ => Seen::Apart,
+            (true, _) => DistanceOutcome::Inside,
+            (_, true) => DistanceOutcome::Touching,
+            _ if length < 1e-6 * size => DistanceOutcome::Near,
+            _ => DistanceOutcome::Apart,
         })
     }
 

@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 use colltrans::solid::{Claim, Reason, SolidCertificate, StartProof};
 use colltrans::{Cast, Solid};
 
-use super::facets::{Gaps, Judge, Triangle, triangles};
+use super::facets::{FacetJudge, Gaps, Triangle, triangles};
 use crate::oracle::exact::Ratio;
 
 /// Maximum number of pairs of facets that are judged.
@@ -39,7 +39,7 @@ pub fn approve(
     };
     let moving = placed(cast.moving(), cast.moving_pose());
     let fixed = placed(cast.fixed(), cast.fixed_pose());
-    let judge = Judge::new(cast.direction());
+    let judge = FacetJudge::new(cast.direction());
     for claim in &claims {
         for s in claim.moving.clone() {
             for t in claim.fixed.clone() {
@@ -79,7 +79,13 @@ pub(super) fn once<R>([m, n]: [usize; 2], claims: &[Claim<R>]) -> Result<(), Str
     }
 }
 
-fn holds(judge: &Judge, reason: Reason, lower: f64, gaps: &Gaps, [f, g]: [&Triangle; 2]) -> bool {
+fn holds(
+    judge: &FacetJudge,
+    reason: Reason,
+    lower: f64,
+    gaps: &Gaps,
+    [f, g]: [&Triangle; 2],
+) -> bool {
     let parts = |gaps: &Gaps| {
         let zero = Ratio::from_f64(0.0);
         gaps.range

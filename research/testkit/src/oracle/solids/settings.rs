@@ -19,7 +19,7 @@ pub(super) const AGREEMENT: f64 = 512.0;
 
 /// The outcome, for statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Seen {
+pub enum MotionOutcome {
     /// The bodies overlap.
     Overlapping,
     /// The moving body is free.
@@ -133,7 +133,7 @@ impl Setting {
     ///
     /// # Errors
     /// A description of the first disagreement.
-    pub fn examine(&self, in_fractions: bool) -> Result<Seen, String> {
+    pub fn examine(&self, in_fractions: bool) -> Result<MotionOutcome, String> {
         let solid = |k: usize| {
             let (vertices, facets) = &self.surfaces[k];
             Solid::from_mesh(vertices, facets).map_err(|e| format!("body {k}: {e}"))
@@ -175,19 +175,19 @@ impl Setting {
         }
         if expected.overlaps && cast.overlaps() {
             let said = matches!(found, Clearance::Overlapping(_));
-            return if said { Ok(Seen::Overlapping) } else { Err(format!("{found:?}")) };
+            return if said { Ok(MotionOutcome::Overlapping) } else { Err(format!("{found:?}")) };
         }
         if let Clearance::Free(SolidFree { separation: Some(separation), .. }) = &found {
             cast.verify(separation).map_err(|e| format!("{found:?}: {e}"))?;
         }
         match (found, expected.overlaps, &expected.stop) {
-            (Clearance::Free(_), false, None) => Ok(Seen::Free),
+            (Clearance::Free(_), false, None) => Ok(MotionOutcome::Free),
             (Clearance::Blocked { distance, contact }, false, Some(stop))
                 if near(distance, stop)
                     && near(contact.translation.value, stop)
                     && encloses(&contact.translation, stop) =>
             {
-                Ok(if stop.is_zero() { Seen::BlockedNow } else { Seen::Blocked })
+                Ok(if stop.is_zero() { MotionOutcome::BlockedNow } else { MotionOutcome::Blocked })
             }
             (found, overlaps, stop) => Err(format!(
                 "{found:?}, but overlapping: {overlaps}, stop: {:?}",

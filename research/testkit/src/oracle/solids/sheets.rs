@@ -5,8 +5,8 @@ use colltrans::{Clearance, Pose, Solid};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::cells::Cells;
-use super::settings::{AGREEMENT, Seen, any_rotation, sheared, way};
-use super::squares::{Crossing, Mixed, Squares};
+use super::settings::{AGREEMENT, MotionOutcome, any_rotation, sheared, way};
+use super::squares::{Mixed, SquareCrossing, Squares};
 use super::{encloses, exactly};
 use crate::oracle::exact::{Ratio, Vector};
 use crate::oracle::scene::size;
@@ -87,18 +87,18 @@ impl Setting {
     }
 
     /// Returns the exact result.
-    pub fn expected(&self) -> Crossing {
+    pub fn expected(&self) -> SquareCrossing {
         let [s, t] = self.poses.map(|pose| Vector::new(pose.translation()));
         let maps = [self.poses[0].matrix(), self.shear];
         let [a, b] = &self.bodies;
-        Crossing::new([a, b], maps, &t.minus(&s), self.direction)
+        SquareCrossing::new([a, b], maps, &t.minus(&s), self.direction)
     }
 
     /// Computes the answers, and judges them.
     ///
     /// # Errors
     /// A description of the first disagreement.
-    pub fn examine(&self) -> Result<Seen, String> {
+    pub fn examine(&self) -> Result<MotionOutcome, String> {
         let [a, b] = &self.solids;
         let cast = exactly([a, b], self.poses, self.direction)?;
         let expected = self.expected();
@@ -120,9 +120,9 @@ impl Setting {
         let not_before = |stop: &Ratio| *stop >= Ratio::from_f64(certificate.lower);
         match (&found, expected.overlaps, &expected.stop) {
             (Clearance::Overlapping(overlap), true, _) if overlap.least_tolerance.is_none() => {
-                Ok(Seen::Overlapping)
+                Ok(MotionOutcome::Overlapping)
             }
-            (Clearance::Free(_), false, None) => Ok(Seen::Free),
+            (Clearance::Free(_), false, None) => Ok(MotionOutcome::Free),
             (Clearance::Blocked { distance, contact }, false, Some(stop))
                 if stop.minus(&Ratio::from_f64(*distance)).is_within(tolerance)
                     && encloses(&contact.translation, stop)
@@ -131,7 +131,7 @@ impl Setting {
                     && contact.point_on_moving.is_finite()
                     && contact.point_on_fixed.is_finite() =>
             {
-                Ok(if stop.is_zero() { Seen::BlockedNow } else { Seen::Blocked })
+                Ok(if stop.is_zero() { MotionOutcome::BlockedNow } else { MotionOutcome::Blocked })
             }
             (found, overlaps, stop) => Err(format!(
                 "{found:?}, but overlapping: {overlaps}, stop: {:?}",

@@ -215,7 +215,7 @@ enum Times {
 
 /// The exact result of a motion, from the times at which pieces of two bodies meet.
 #[derive(Debug, Clone, Default)]
-pub struct Crossing {
+pub struct SquareCrossing {
     /// Whether pieces cross at the start.
     pub overlaps: bool,
     /// The smallest `t >= 0` from which on pieces cross; `None` if there is none.
@@ -224,7 +224,7 @@ pub struct Crossing {
     pub last: Option<Ratio>,
 }
 
-impl Crossing {
+impl SquareCrossing {
     /// Computes the exact result of a motion of `moving` along `direction`, with `fixed` displaced by `offset`.
     /// Both are in the world, and the grids are mapped by `rotation shear`.
     pub fn new(

@@ -30,7 +30,7 @@ const AGREEMENT: f64 = 1e-7;
 
 /// The outcome, for statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Seen {
+pub enum TurningOutcome {
     /// The bodies overlap at the start of the motion.
     Overlapping,
     /// The bodies never meet.
@@ -47,7 +47,7 @@ pub struct Turning {
     solids: [Solid; 2],
     motions: [Motion; 2],
     tolerance: Option<f64>,
-    keep: f64,
+    min_gap: f64,
     convex: Option<[ConvexPolyhedron; 2]>,
 }
 
@@ -55,7 +55,7 @@ pub struct Turning {
 ///
 /// # Errors
 /// A description of the first disagreement.
-pub fn examine(family: &str, seed: u64) -> Result<Option<Seen>, String> {
+pub fn examine(family: &str, seed: u64) -> Result<Option<TurningOutcome>, String> {
     let Some(turning) = Turning::draw(family, seed)? else { return Ok(None) };
     if turning.solids.iter().map(|s| s.triangles().len()).product::<usize>() > MOST_PAIRS {
         return Ok(None);
@@ -77,33 +77,36 @@ impl Turning {
             _ => {
                 let Some(setting) = nearest::Setting::draw(family, seed)? else { return Ok(None) };
                 let nearest::Setting { solids, poses } = setting;
-                let size = solids.iter().map(|s| s.bounds().size().length()).fold(0.0, f64::max);
+                let size =
+                    solids.iter().map(|s| s.bounds().side_lengths().length()).fold(0.0, f64::max);
                 let way = poses[1].translation() - poses[0].translation();
                 let moving = draw_motion(poses[0], way, size, random)?;
                 let fixed = if random.one_in(3) {
                     draw_motion(poses[1], -way, size, random)?
                 } else {
-                    Motion::still(poses[1])
+                    Motion::at_rest(poses[1])
                 };
                 let tolerance = random.one_in(4).then(|| size * random.pick(&[1e-9, 1e-4, 1e-2]));
-                let keep = if random.one_in(6) { size * random.pick(&[1e-6, 1e-2]) } else { 0.0 };
+                let min_gap =
+                    if random.one_in(6) { size * random.pick(&[1e-6, 1e-2]) } else { 0.0 };
                 let motions = [moving, fixed];
-                Ok(Some(Self { solids, motions, tolerance, keep, convex: None }))
+                Ok(Some(Self { solids, motions, tolerance, min_gap, convex: None }))
             }
         }
     }
 
     fn cast(&self, swapped: bool) -> Result<Option<MotionCast<'_, Solid>>, String> {
-        let [a, b] = [0, 1].map(|k| self.solids[k].along(&self.motions[k]));
+        let [a, b] = [0, 1].map(|k| self.solids[k].with_motion(&self.motions[k]));
         let [moving, fixed] = if swapped { [b, a] } else { [a, b] };
-        let cast = MotionCast::<Solid>::new(moving, fixed).and_then(|cast| cast.keeping(self.keep));
+        let cast = MotionCast::<Solid>::new(moving, fixed)
+            .and_then(|cast| cast.with_min_gap(self.min_gap));
         let cast = cast.map_err(|e| e.to_string())?;
         // A body may vanish when it is shrunk by the tolerance.
         let tolerance = self.tolerance.unwrap_or_else(|| cast.tolerance());
-        Ok(cast.tolerating(tolerance).ok())
+        Ok(cast.with_tolerance(tolerance).ok())
     }
 
-    fn examine(&self) -> Result<Option<Seen>, String> {
+    fn examine(&self) -> Result<Option<TurningOutcome>, String> {
         let Some(cast) = self.cast(false)? else { return Ok(None) };
         let plain = cast.first_contact().map_err(|e| e.to_string())?;
         let outcome = cast.certified_first_contact().map_err(|e| e.to_string())?;
@@ -128,10 +131,10 @@ impl Turning {
                 .map_err(|e| format!("convex: {e}"))?;
         }
         Ok(Some(match outcome {
-            MotionOutcome::Overlapping(_) => Seen::Overlapping,
-            MotionOutcome::Free(_) => Seen::Free,
-            MotionOutcome::Grazing(_) => Seen::Grazing,
-            _ => Seen::Contact,
+            MotionOutcome::Overlapping(_) => TurningOutcome::Overlapping,
+            MotionOutcome::Free(_) => TurningOutcome::Free,
+            MotionOutcome::Grazing(_) => TurningOutcome::Grazing,
+            _ => TurningOutcome::Contact,
         }))
     }
 
@@ -188,17 +191,19 @@ impl Turning {
         // and not for the meeting.
         let far = self.motions.iter().map(|motion| {
             let ends =
-                [0.0, lower].map(|t| motion.at(t).map_or(0.0, |at| at.translation().length()));
+                [0.0, lower].map(|t| motion.pose_at(t).map_or(0.0, |at| at.translation().length()));
             ends[0].max(ends[1])
         });
-        let size = self.solids.iter().map(|s| s.bounds().size().length()).fold(0.0, f64::max);
+        let size =
+            self.solids.iter().map(|s| s.bounds().side_lengths().length()).fold(0.0, f64::max);
         let (far, tolerance) = (far.fold(0.0, f64::max), outcome.proof().tolerance);
         let is_near = far <= FAR * size;
         let more = if is_near { tolerance } else { tolerance + 32.0 * f64::EPSILON * far };
         let overlaps = |time: f64, tolerance: f64| -> Result<bool, String> {
-            let [a, b] = [0, 1].map(|k| self.motions[k].at(time).map_err(|e| e.to_string()));
+            let [a, b] = [0, 1].map(|k| self.motions[k].pose_at(time).map_err(|e| e.to_string()));
             let cast = Cast::new(self.solids[0].at(a?), self.solids[1].at(b?), DVec3::Z);
-            let cast = cast.and_then(|cast| cast.with_tolerance(tolerance)?.keeping(self.keep));
+            let cast =
+                cast.and_then(|cast| cast.with_tolerance(tolerance)?.with_min_gap(self.min_gap));
             match cast {
                 Err(QueryError::NothingLeft { .. }) => Ok(false),
                 cast => Ok(cast.map_err(|e| e.to_string())?.overlaps()),
@@ -211,7 +216,7 @@ impl Turning {
             }
         }
         // With a gap, rounding decides whether the bodies are nearer.
-        if upper <= 1.0 && self.keep == 0.0 && is_near && !overlaps(upper, tolerance)? {
+        if upper <= 1.0 && self.min_gap == 0.0 && is_near && !overlaps(upper, tolerance)? {
             return Err(format!("met at {upper}, but no overlap"));
         }
         Ok(())
@@ -248,12 +253,12 @@ fn draw_motion(pose: Pose, way: DVec3, size: f64, random: &mut Random) -> Result
     let point = if random.one_in(3) { at } else { at + random.vector() * size };
     let angle = random.range(-1.0, 1.0) * random.pick(&[1e-6, 1.0, 6.0, 6.0, 30.0]);
     match random.index(5) {
-        0 => Motion::turn(pose, point, axis, angle),
+        0 => Motion::rotation_about(pose, point, axis, angle),
         1 => Motion::screw(pose, point, axis, angle, random.range(-1.0, 1.0) * size),
-        2 => Motion::slide(pose, way * random.range(-2.0, 2.0) + random.vector() * size),
+        2 => Motion::translation(pose, way * random.range(-2.0, 2.0) + random.vector() * size),
         3 => {
             let velocity = way * random.range(0.0, 2.0) + random.vector() * size;
-            Motion::thrown(pose, point, velocity, axis * angle)
+            Motion::free_flight(pose, point, velocity, axis * angle)
         }
         _ => {
             let next = |random: &mut Random| {
@@ -261,7 +266,7 @@ fn draw_motion(pose: Pose, way: DVec3, size: f64, random: &mut Random) -> Result
             };
             let poses = [next(random), next(random)].map(|pose| pose.map_err(|e| e.to_string()));
             let [a, b] = poses;
-            Motion::through(&[pose, a?, b?])
+            Motion::through_poses(&[pose, a?, b?])
         }
     }
     .map_err(|e| e.to_string())
@@ -278,9 +283,9 @@ fn draw_hulls(random: &mut Random) -> Result<Turning, String> {
     let pose = Pose::new(random.rotation(), from).map_err(|e| e.to_string())?;
     let way = (random.vector() * 1.5 - from) * random.range(0.5, 2.0);
     let spin = random.direction() * random.range(0.1, 6.0);
-    let moving = Motion::thrown(pose, from, way, spin).map_err(|e| e.to_string())?;
+    let moving = Motion::free_flight(pose, from, way, spin).map_err(|e| e.to_string())?;
     let still =
-        Motion::still(Pose::new(random.rotation(), DVec3::ZERO).map_err(|e| e.to_string())?);
+        Motion::at_rest(Pose::new(random.rotation(), DVec3::ZERO).map_err(|e| e.to_string())?);
     let fixed =
         if random.one_in(3) { draw_motion(Pose::IDENTITY, from, 2.0, random)? } else { still };
     let solid = |body: &ConvexPolyhedron| Solid::from_convex(body).map_err(|e| e.to_string());
@@ -289,7 +294,7 @@ fn draw_hulls(random: &mut Random) -> Result<Turning, String> {
         solids,
         motions: [moving, fixed],
         tolerance: None,
-        keep: 0.0,
+        min_gap: 0.0,
         convex: Some(convex),
     })
 }
@@ -311,8 +316,8 @@ fn draw_pin_in_hole(random: &mut Random) -> Result<Turning, String> {
     let axis = if tips { DVec3::Z + random.vector() * random.pick(&[1e-6, 0.1]) } else { DVec3::Z };
     let moving = Motion::screw(pose, DVec3::ZERO, axis, angle, rise).map_err(|e| e.to_string())?;
     let tolerance = random.one_in(2).then(|| random.pick(&[1e-6, 0.01, 0.05]));
-    let motions = [moving, Motion::still(pose)];
-    Ok(Turning { solids, motions, tolerance, keep: 0.0, convex: None })
+    let motions = [moving, Motion::at_rest(pose)];
+    Ok(Turning { solids, motions, tolerance, min_gap: 0.0, convex: None })
 }
 
 /// Draws a bolt in a nut, with the matching or a different pitch.
@@ -332,6 +337,6 @@ fn draw_bolt_in_nut(random: &mut Random) -> Result<Turning, String> {
     let pose = Pose::IDENTITY;
     let moving = Motion::screw(pose, DVec3::ZERO, DVec3::Z, angle, turns * pitch);
     let tolerance = random.one_in(2).then(|| random.pick(&[1e-3, 0.03]));
-    let motions = [moving.map_err(|e| e.to_string())?, Motion::still(pose)];
-    Ok(Turning { solids, motions, tolerance, keep: 0.0, convex: None })
+    let motions = [moving.map_err(|e| e.to_string())?, Motion::at_rest(pose)];
+    Ok(Turning { solids, motions, tolerance, min_gap: 0.0, convex: None })
 }

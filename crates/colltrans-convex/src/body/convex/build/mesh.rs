@@ -122,7 +122,7 @@ impl Surface {
             }
             face_start.push(corners.len() as u32);
         }
-        let topology = Topology::sphere(vertices.len(), face_start, corners)?;
+        let topology = Topology::from_sphere_faces(vertices.len(), face_start, corners)?;
         let surface = if used.iter().all(|&u| u) {
             Self {
                 points: vertices.to_vec(),
@@ -148,9 +148,10 @@ impl Surface {
             position[v as usize] = k as u32;
         }
         let corners: Vec<u32> = topology.origins().iter().map(|&v| position[v as usize]).collect();
-        let face_start = (0..topology.face_count() as u32).map(|f| topology.face(f).start);
+        let face_start =
+            (0..topology.face_count() as u32).map(|f| topology.face_half_edges(f).start);
         let face_start = face_start.chain([corners.len() as u32]).collect();
-        let topology = Topology::sphere(index.len(), face_start, corners)?;
+        let topology = Topology::from_sphere_faces(index.len(), face_start, corners)?;
         Ok(Self { points: index.iter().map(|&v| vertices[v as usize]).collect(), index, topology })
     }
 
@@ -238,7 +239,7 @@ impl<'a> Depths<'a> {
         match self.hull.dimension {
             0 | 1 => 0.0,
             2 => {
-                let rim = topology.face(face).filter(|&h| self.turns_back(h));
+                let rim = topology.face_half_edges(face).filter(|&h| self.turns_back(h));
                 let points = rim.flat_map(|h| [at(topology.origin(h)), middle(h)]);
                 self.max_depth(points, known, near)
             }
@@ -246,7 +247,8 @@ impl<'a> Depths<'a> {
             _ => {
                 let corners = topology.face_vertices(face).map(at);
                 let center = corners.clone().sum::<DVec3>() / corners.len() as f64;
-                let points = corners.chain(topology.face(face).map(middle)).chain([center]);
+                let points =
+                    corners.chain(topology.face_half_edges(face).map(middle)).chain([center]);
                 self.max_depth(points, known, near)
             }
         }
@@ -280,19 +282,20 @@ impl<'a> Depths<'a> {
             return false;
         }
         let corners = corners.flatten();
-        let Some(fewest) = corners.clone().min_by_key(|&v| topology.outgoing(v).len()) else {
+        let Some(fewest) = corners.clone().min_by_key(|&v| topology.outgoing_half_edges(v).len())
+        else {
             return false;
         };
         let face_of = |h: &u32| topology.half_edge(*h).face;
         // Search the shorter list: the faces at a vertex (not at an apex) or the vertices of a face (not of a cap).
         let contains = |f: u32, v: u32| {
-            if topology.outgoing(v).len() <= topology.face(f).len() {
-                topology.outgoing(v).iter().any(|h| face_of(h) == f)
+            if topology.outgoing_half_edges(v).len() <= topology.face_half_edges(f).len() {
+                topology.outgoing_half_edges(v).iter().any(|h| face_of(h) == f)
             } else {
                 topology.face_vertices(f).any(|w| w == v)
             }
         };
-        let faces = topology.outgoing(fewest).iter().map(face_of);
+        let faces = topology.outgoing_half_edges(fewest).iter().map(face_of);
         faces.into_iter().any(|f| corners.clone().all(|v| contains(f, v)))
     }
 }

@@ -212,7 +212,7 @@ impl ConvexPolyhedron {
             inertia,
             support,
             sections: OnceLock::new(),
-            kept: crate::body::Kept::default(),
+            kept: crate::body::DerivedDataSlot::default(),
         };
         body.measure_faces();
         // Queries use the links to walk around faces of small bodies and along rims of large faces. Other bodies
@@ -232,7 +232,8 @@ impl ConvexPolyhedron {
             face_vertices.extend_from_slice(face);
             face_start.push(face_vertices.len() as u32);
         }
-        let topology = Topology::sphere(vertices.len(), face_start, face_vertices).unwrap();
+        let topology =
+            Topology::from_sphere_faces(vertices.len(), face_start, face_vertices).unwrap();
         let vertices_in_order = (0..vertices.len() as u32).collect();
         let hull = IndexedHull {
             dimension: 3,

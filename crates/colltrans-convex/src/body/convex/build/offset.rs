@@ -15,7 +15,7 @@ use super::hull::{self, IndexedHull};
 use crate::body::error::BuildError;
 use crate::body::{ConvexPolyhedron, Inertia};
 use colltrans_kernel::plane::polygon_normal;
-use colltrans_kernel::range::without_traces;
+use colltrans_kernel::range::with_tiny_components_zeroed;
 
 /// Maximum ratio of the farthest corner's distance to the nearest plane's distance, in `z`. A result with a larger
 /// ratio is recomputed about its own centroid.
@@ -172,7 +172,7 @@ fn face_planes(body: &ConvexPolyhedron) -> Vec<HalfSpace> {
     let mut planes: Vec<HalfSpace> = faces.map(supporting).collect();
     if body.dimension == 2 {
         let up = planes[0].normal;
-        let edges = body.topology.face(0).map(|h| {
+        let edges = body.topology.face_half_edges(0).map(|h| {
             let along = at(body.topology.target(h)) - at(body.topology.origin(h));
             along.cross(up).normalize_or_zero()
         });
@@ -192,7 +192,8 @@ impl Normalisation {
         Self { center: inertia.center, factor: inertia.factor }
     }
 
-    /// Uses those of the original body, with the ellipsoid enlarged by the amount of growth.
+    /// Returns the centre and the ellipsoid of the original body. If the body grows, enlarges the ellipsoid by the
+    /// amount.
     fn for_first_step(inertia: &Inertia, inwards: f64) -> Self {
         let grows = DVec3::splat((-inwards).max(0.0));
         Self { factor: inertia.factor + DMat3::from_diagonal(grows), ..Self::new(inertia) }
@@ -272,7 +273,7 @@ impl OffsetCell {
         let turned = normalisation.factor.transpose();
         let polar_point = |p: &HalfSpace| {
             let depth = p.depth_of(normalisation.center) - step;
-            without_traces(turned * p.normal / depth)
+            with_tiny_components_zeroed(turned * p.normal / depth)
         };
         let points: Vec<DVec3> = planes.iter().map(polar_point).collect();
         hull::check_points(&points).ok()?;
@@ -292,7 +293,9 @@ impl OffsetCell {
             }
             let corner = normal / height;
             reach = reach.max(corner.length());
-            corners.push(without_traces(normalisation.center + normalisation.factor * corner));
+            corners.push(with_tiny_components_zeroed(
+                normalisation.center + normalisation.factor * corner,
+            ));
         }
         let nearest = points.iter().map(|p| p.length()).fold(0.0, f64::max);
         let hull = hull::convex_hull(&corners);

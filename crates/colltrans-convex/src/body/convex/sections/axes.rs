@@ -1,7 +1,8 @@
 //! The four section axes of a body, and the selection of one axis for each of two bodies.
 //!
 //! Two axes `a`, `b` and the direction `d` are in general configuration if `a . d != 0`, `b . d != 0` and
-//! `a x b != 0`. Some pair of the axes always is, with a margin of `1/3`; see `docs/theory/sections.md`.
+//! `a x b != 0`. For any poses and direction, at least one pair of section axes is in general configuration, with a
+//! margin of `1/3` (`docs/theory/sections.md`).
 
 use glam::{DMat3, DVec3};
 
@@ -28,7 +29,7 @@ pub(crate) struct AxisPair {
 impl AxisPair {
     /// Selects the pair that is farthest from a degenerate configuration with the unit direction `unit`. `moving`
     /// and `fixed` map the body frames to the frame of the setting.
-    pub(crate) fn choose(moving: &DMat3, fixed: &DMat3, unit: DVec3) -> Self {
+    pub(crate) fn most_general(moving: &DMat3, fixed: &DMat3, unit: DVec3) -> Self {
         let a = AXES.map(|axis| *moving * axis);
         let b = AXES.map(|axis| *fixed * axis);
         let along = |axes: &[DVec3; 4]| axes.map(|axis| 3.0 * (axis.dot(unit) * axis.dot(unit)));
@@ -57,7 +58,7 @@ mod tests {
     fn chosen_axis_pair_is_in_general_configuration() {
         let mut worst = f64::INFINITY;
         let mut check = |moving: DMat3, fixed: DMat3, d: DVec3| {
-            let pair = AxisPair::choose(&moving, &fixed, d);
+            let pair = AxisPair::most_general(&moving, &fixed, d);
             let (a, b) = (pair.moving.1.normalize(), pair.fixed.1.normalize());
             worst = worst.min(a.dot(d).abs().min(b.dot(d).abs()).min(a.cross(b).length()));
         };

@@ -35,7 +35,7 @@ pub(crate) struct Chains {
 }
 
 /// The search of one level in the chains.
-pub(crate) struct Search<'a, L, C> {
+pub(crate) struct ChainSearch<'a, L, C> {
     pub(crate) chains: &'a Chains,
     pub(crate) topology: &'a Topology,
     pub(crate) x: f64,
@@ -55,7 +55,7 @@ impl Chains {
         let mut chains = Self { ranks, starts: vec![0; count + 2], edges: Vec::new(), cut };
         let mut is_cut = vec![false; mesh.topology.half_edges().len()];
         chains.cut.iter().for_each(|&up| is_cut[up as usize] = true);
-        let of_vertex = |&(_, v): &(f64, u32)| mesh.topology.outgoing(v).iter().copied();
+        let of_vertex = |&(_, v): &(f64, u32)| mesh.topology.outgoing_half_edges(v).iter().copied();
         let ups =
             || order.iter().flat_map(of_vertex).filter(|&h| mesh.is_up(h) && !is_cut[h as usize]);
         // First pass: count the edges of each node. Second pass: store them, with `starts` as the next free
@@ -125,15 +125,16 @@ fn face_ranks(mesh: &LeveledMesh, cut: &[u32]) -> Vec<u32> {
         is_cut[topology.half_edge(up).twin as usize] = true;
     }
     let is_down = |h: &u32| mesh.is_up(topology.half_edge(*h).twin) && !is_cut[*h as usize];
-    let mut waiting: Vec<u32> =
-        (0..faces).map(|face| topology.face(face).filter(is_down).count() as u32).collect();
+    let mut waiting: Vec<u32> = (0..faces)
+        .map(|face| topology.face_half_edges(face).filter(is_down).count() as u32)
+        .collect();
     let mut ranks = vec![NONE; faces as usize];
     let mut queue: Vec<u32> = (0..faces).filter(|&face| waiting[face as usize] == 0).collect();
     let mut ranked = 0;
     while let Some(&face) = queue.get(ranked) {
         ranks[face as usize] = ranked as u32;
         ranked += 1;
-        for h in topology.face(face).filter(|&h| mesh.is_up(h) && !is_cut[h as usize]) {
+        for h in topology.face_half_edges(face).filter(|&h| mesh.is_up(h) && !is_cut[h as usize]) {
             let next = topology.half_edge(topology.half_edge(h).twin).face as usize;
             waiting[next] -= 1;
             if waiting[next] == 0 {
@@ -147,7 +148,7 @@ fn face_ranks(mesh: &LeveledMesh, cut: &[u32]) -> Vec<u32> {
     ranks
 }
 
-impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
+impl<L: Fn(u32) -> f64, C: Fn(u32)> ChainSearch<'_, L, C> {
     /// Returns the edge of a node that crosses the level, if there is one.
     fn crossing_edge_of_node(&self, node: u32) -> Option<u32> {
         let Chains { starts, edges, .. } = self.chains;
@@ -178,7 +179,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
     /// reach the level.
     fn along_face(&self, from: u32) -> Option<u32> {
         let topology = self.topology;
-        let face = topology.face(topology.half_edge(from).face);
+        let face = topology.face_half_edges(topology.half_edge(from).face);
         let sides = face.len() as u32;
         if sides <= MAX_WALKED_SIDES {
             return None;
@@ -225,7 +226,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
 
     /// Finds an edge that crosses the level, starting at an edge `up` that may cross another level. Returns `None`
     /// if rounding hides all candidates.
-    pub(crate) fn near(&self, up: u32) -> Option<u32> {
+    pub(crate) fn any_crossing_edge(&self, up: u32) -> Option<u32> {
         let [face, _] = self.ranks_along(up, Turn::CounterClockwise);
         let faces = self.chains.ranks.len() as u32;
         let above = (0..=faces.ilog2()).map(|bits| (face >> bits | 1) << bits);
@@ -237,7 +238,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
     /// Finds the last edge of the section from `start` on for which `holds` is true. It must be true for `start` and
     /// the edges after it up to some edge, and false for the remaining ones. Returns `None` if rounding hides an
     /// edge.
-    pub(crate) fn last(
+    pub(crate) fn last_while(
         &self,
         start: u32,
         turn: Turn,

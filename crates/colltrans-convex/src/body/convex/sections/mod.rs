@@ -20,7 +20,7 @@ mod walk;
 use glam::DVec3;
 
 pub(crate) use axes::{AXES, AXIS_LENGTH, AxisPair};
-pub(crate) use chains::Search;
+pub(crate) use chains::ChainSearch;
 use colltrans_kernel::topology::Topology;
 use snapshots::CHAIN_THRESHOLD;
 pub(crate) use snapshots::{AxisSections, SectionMap, Snapshot, Turn};

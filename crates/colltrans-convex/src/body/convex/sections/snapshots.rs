@@ -91,7 +91,7 @@ impl LeveledMesh<'_> {
     fn highest_edges(&self) -> Vec<Option<u32>> {
         let level = |v: u32| self.levels[v as usize];
         let highest = |v: u32| {
-            let (edges, ends) = (self.topology.outgoing(v), self.topology.neighbours(v));
+            let (edges, ends) = (self.topology.outgoing_half_edges(v), self.topology.neighbours(v));
             let upwards = edges.iter().zip(ends).filter(|&(_, &end)| level(end) > level(v));
             upwards.max_by(|a, b| level(*a.1).total_cmp(&level(*b.1))).map(|(&edge, _)| edge)
         };
@@ -219,7 +219,7 @@ impl AxisSections {
             }
             // A vertex below the top has an edge upwards. If rounding hides it, use one of the vertices before it.
             let first = order[..=rank].iter().rev().find_map(|&(_, v)| {
-                let mut outgoing = topology.outgoing(v).iter().copied();
+                let mut outgoing = topology.outgoing_half_edges(v).iter().copied();
                 outgoing.find(|&h| vertex_levels[topology.target(h) as usize] > level)
             });
             if let Some(first) = first {
@@ -286,7 +286,7 @@ impl AxisSections {
     }
 
     /// Returns the last snapshot at or below level `x >= range[0]`, extrapolated to this level and mapped by `map`.
-    pub(crate) fn snapshot<'a>(&'a self, map: &'a SectionMap, x: f64) -> Snapshot<'a> {
+    pub(crate) fn snapshot_below<'a>(&'a self, map: &'a SectionMap, x: f64) -> Snapshot<'a> {
         let index = self.levels.partition_point(|&level| level <= x).max(1) - 1;
         let end = self.starts.get(index + 1).map_or(0, |&end| end as usize);
         Snapshot {
@@ -395,13 +395,13 @@ impl Snapshot<'_> {
     }
 
     /// Returns the crossing edge of entry `index`.
-    pub(crate) fn up(&self, index: usize) -> u32 {
+    pub(crate) fn crossing_edge(&self, index: usize) -> u32 {
         self.entries[index].up
     }
 
     /// Computes the extrapolated point of entry `index`.
     #[inline]
-    pub(crate) fn point(&self, index: usize) -> DVec2 {
+    pub(crate) fn extrapolated_point(&self, index: usize) -> DVec2 {
         let [u, v] = self.entries[index].position_at(self.above);
         self.base + self.map.slopes[0] * f64::from(u) + self.map.slopes[1] * f64::from(v)
     }
@@ -410,7 +410,7 @@ impl Snapshot<'_> {
     ///
     /// On a convex polygon, the minimum lies within one stride of the best of every `stride`-th entry. Each round
     /// compares all its candidates without branches, because their outcomes are unpredictable.
-    pub(crate) fn extreme(&self, sign: f32) -> usize {
+    pub(crate) fn extreme_entry(&self, sign: f32) -> usize {
         let count = self.entries.len();
         let slope = self.map.height.map(|s| sign * s);
         let value = |i: usize| {

@@ -33,7 +33,7 @@ pub(crate) fn next_clockwise(topology: &Topology, up: u32, above: impl Fn(u32) -
 /// be true for the origin of `from`, and false for its target.
 #[inline]
 fn run_end(topology: &Topology, from: u32, inside: impl Fn(u32) -> bool) -> u32 {
-    let face = topology.face(topology.half_edge(from).face);
+    let face = topology.face_half_edges(topology.half_edge(from).face);
     let count = face.end - face.start;
     let wrap = |offset: u32| {
         let h = from + offset;

@@ -3,7 +3,7 @@ use glam::{DVec2, DVec3};
 use super::bodies::{Random, cone, cuboid, ellipsoid, prism};
 use crate::body::ConvexPolyhedron;
 use crate::body::convex::sections::{
-    Search, SectionIndex, Turn, next_clockwise, next_counter_clockwise,
+    ChainSearch, SectionIndex, Turn, next_clockwise, next_counter_clockwise,
 };
 
 fn test_bodies() -> Vec<ConvexPolyhedron> {
@@ -139,16 +139,16 @@ fn snapshot_extremes_match_scan() {
             for x in levels(&body, axis, &mut random) {
                 let constants = DVec2::new(random.signed(), random.signed());
                 let map = index.axis(i).map([random.unit(), random.unit()], constants);
-                let snapshot = index.axis(i).snapshot(&map, x);
-                let height = |i: usize| snapshot.point(i).x;
+                let snapshot = index.axis(i).snapshot_below(&map, x);
+                let height = |i: usize| snapshot.extrapolated_point(i).x;
                 let heights: Vec<f64> = (0..snapshot.len()).map(height).collect();
                 let least = heights.iter().copied().fold(f64::INFINITY, f64::min);
                 let greatest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                 // Positions are rounded to f32. Therefore points next to the extreme may deviate from a convex
                 // polygon.
                 let size = body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
-                assert!(height(snapshot.extreme(1.0)) <= least + 1e-5 * size);
-                assert!(height(snapshot.extreme(-1.0)) >= greatest - 1e-5 * size);
+                assert!(height(snapshot.extreme_entry(1.0)) <= least + 1e-5 * size);
+                assert!(height(snapshot.extreme_entry(-1.0)) >= greatest - 1e-5 * size);
             }
         }
     }
@@ -173,14 +173,14 @@ fn snapshot_points_lie_on_section_halfway_to_next_vertex() {
                     continue;
                 }
                 let halfway = f64::midpoint(level, next);
-                let snapshot = index.axis(i).snapshot(&map, halfway);
+                let snapshot = index.axis(i).snapshot_below(&map, halfway);
                 for (k, up) in entries.into_iter().enumerate() {
                     let ends = [body.topology().origin(up), body.topology().target(up)];
                     let [low, high] = ends.map(|v| body.vertices()[v as usize]);
                     let share = (halfway - axis.dot(low)) / axis.dot(high - low);
                     let point = low + (high - low) * share;
                     let expected = constants + DVec2::from_array(covectors.map(|c| c.dot(point)));
-                    assert!((snapshot.point(k) - expected).length() < 1e-5 * size);
+                    assert!((snapshot.extrapolated_point(k) - expected).length() < 1e-5 * size);
                 }
             }
         }
@@ -204,7 +204,7 @@ fn chain_searches_match_section_walks() {
         for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
             for x in levels(&body, axis, &mut random) {
                 let ring = section_ring(&body, axis, x);
-                let search = Search {
+                let search = ChainSearch {
                     chains: index.axis(i).chains().expect("chains"),
                     topology: body.topology(),
                     x,
@@ -213,14 +213,14 @@ fn chain_searches_match_section_walks() {
                 };
                 // From any edge, the search finds an edge that crosses the level.
                 let any = random.index(body.topology().half_edges().len()) as u32;
-                assert!(ring.contains(&search.near(any).expect("an edge")));
+                assert!(ring.contains(&search.any_crossing_edge(any).expect("an edge")));
                 for _ in 0..20 {
                     let (from, many) = (random.index(ring.len()), random.index(ring.len()));
                     for turn in [Turn::CounterClockwise, Turn::Clockwise] {
                         let step = if turn == Turn::Clockwise { ring.len() - 1 } else { 1 };
                         let at = |k: usize| ring[(from + k * step) % ring.len()];
                         let held: Vec<u32> = (0..=many).map(at).collect();
-                        let found = search.last(at(0), turn, |up| held.contains(&up));
+                        let found = search.last_while(at(0), turn, |up| held.contains(&up));
                         assert_eq!(found, Some(at(many)), "{turn:?}, {many} of {}", ring.len());
                     }
                 }

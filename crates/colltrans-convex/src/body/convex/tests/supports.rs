@@ -88,7 +88,7 @@ fn fan_visits_all_neighbours_above_level() {
                 let body = ConvexPolyhedron::from_points(&points).unwrap();
                 let apex = body.support(DVec3::Z).0;
                 let neighbours = body.neighbours(apex);
-                if neighbours.len() <= super::super::fan::FAN {
+                if neighbours.len() <= super::super::fan::MAX_SCANNED_NEIGHBOURS {
                     continue;
                 }
                 let here = body.vertices()[apex as usize];

@@ -5,7 +5,7 @@ use colltrans_testkit::shapes::{even_rings, random_hull, ring, ring_points};
 use glam::{DQuat, DVec3};
 
 use crate::{Cast, ConvexPolyhedron, Pose};
-use colltrans_kernel::work::{assert_growth, looks};
+use colltrans_kernel::visit_counter::{assert_growth, visits_during};
 
 fn hull(points: &[DVec3]) -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(points).expect("points")
@@ -115,7 +115,8 @@ fn hull_work_on_chamfered_rims_is_bounded() {
                 both.flat_map(|(r, z)| ring(count / 4, r, z)).map(|p| turn * p).collect()
             };
             let most = 400 * 20_000;
-            let count = looks(|| assert_eq!(hull(&points(20_000)).vertices().len(), 20_000));
+            let count =
+                visits_during(|| assert_eq!(hull(&points(20_000)).vertices().len(), 20_000));
             println!("chamfer {chamfer}, {how}: {count} looks");
             assert!(count < most, "chamfer {chamfer}, {how}: {count} looks");
         }
@@ -138,7 +139,7 @@ fn cast_work_on_rims_does_not_scale_with_corners() {
             let points: Vec<_> = rings.chain(tips.iter().map(|&z| DVec3::Z * z)).collect();
             let body = hull(&points);
             let mut random = Random::new(3);
-            looks(|| {
+            visits_during(|| {
                 for _ in 0..200 {
                     let direction = random.direction();
                     let aside = random.direction() * random.range(0.0, 0.8);

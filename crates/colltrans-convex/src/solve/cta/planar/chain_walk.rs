@@ -4,10 +4,11 @@
 //! concave. Therefore `gap(h) = l(h) - r(h)` is convex:
 //!
 //! - where the gap is positive and falls, the answer is above,
-//! - where it is not positive, or grows, the answer is below.
+//! - where it is not positive, or does not fall, the answer is below.
 //!
-//! The edges that meet in the answer prove it, regardless of the start: they are the first pair that crosses
-//! coming from below, or the gap grows past their vertex.
+//! The edges at the answer prove it, independent of the start of the walk. Either they are the first pair, from below,
+//! that crosses, or the gap is positive and least at their vertex: to each side of it, the gap does not decrease or a
+//! chain ends.
 
 use glam::DVec2;
 

@@ -58,7 +58,7 @@ pub(super) enum LastAnswer {
 }
 
 impl PlanarHint {
-    /// The hint without any knowledge.
+    /// The empty hint: no height, no levels and no answer.
     pub(super) const NONE: Self =
         Self { height: f64::NEG_INFINITY, levels: [f64::NAN; 2], last: LastAnswer::Nothing };
 }

@@ -19,7 +19,8 @@ use crate::solve::cta::sectioned_body::SectionedBody;
 /// Returns the edges that probably determine the answer, and its height. `None` if a body has no snapshot.
 pub(super) fn guess_from_snapshots(sections: &[Section; 2]) -> Option<(LastAnswer, f64)> {
     let outlines = [SnapshotOutline::new(&sections[0])?, SnapshotOutline::new(&sections[1])?];
-    let bottoms = outlines.each_ref().map(|outline| outline.snapshot.point(outline.bottom));
+    let bottoms =
+        outlines.each_ref().map(|outline| outline.snapshot.extrapolated_point(outline.bottom));
     let upper = usize::from(bottoms[1].x > bottoms[0].x);
     let (lower, bottom) = (&outlines[1 - upper], bottoms[upper]);
     let [left, right] = [Chain::Left, Chain::Right].map(|chain| {
@@ -33,7 +34,7 @@ pub(super) fn guess_from_snapshots(sections: &[Section; 2]) -> Option<(LastAnswe
         (upper, right)
     } else {
         let between = [left, right].map(|(_, at, arc)| arc.nearest_crossing(at, bottom.x));
-        let vertex = outlines[upper].snapshot.up(outlines[upper].bottom);
+        let vertex = outlines[upper].snapshot.crossing_edge(outlines[upper].bottom);
         return Some((LastAnswer::Bottom { upper, vertex, between }, bottom.x));
     };
     let (right, (_, start, of_lower)) = chain_beyond;
@@ -62,10 +63,10 @@ impl<'a> SnapshotOutline<'a> {
     /// sections.
     fn new(section: &Section<'a>) -> Option<Self> {
         let side = section.side;
-        let snapshot = side.sections.snapshot(&side.section_map, section.level);
+        let snapshot = side.sections.snapshot_below(&side.section_map, section.level);
         let halvings = snapshot.len().checked_ilog2()?;
         side.count_iterations(2 * halvings);
-        let (bottom, top) = (snapshot.extreme(1.0), snapshot.extreme(-1.0));
+        let (bottom, top) = (snapshot.extreme_entry(1.0), snapshot.extreme_entry(-1.0));
         Some(Self { side, snapshot, bottom, top })
     }
 
@@ -104,7 +105,7 @@ impl ChainArc<'_> {
 
     /// Returns a vertex in the shadow plane.
     fn arc_point(&self, vertex: usize) -> DVec2 {
-        self.outline.snapshot.point(self.snapshot_index(vertex))
+        self.outline.snapshot.extrapolated_point(self.snapshot_index(vertex))
     }
 
     /// Finds the last vertex in a range that is not above height `h`, or the first of the range.
@@ -137,7 +138,7 @@ impl ChainArc<'_> {
         let [low, high] = self.edge_ends(vertex);
         let vertex = vertex.min(self.last.saturating_sub(1));
         let nearer = if high.x - h < h - low.x { (vertex + 1).min(self.last) } else { vertex };
-        self.outline.snapshot.up(self.snapshot_index(nearer))
+        self.outline.snapshot.crossing_edge(self.snapshot_index(nearer))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Checks invariances of free directions: under rotation of both bodies, and with a larger tolerance.
 
-use colltrans::free::{FreeDirections, FreeError, FreeOptions, Verdict};
+use colltrans::removal::directions::{FreeDirections, FreeError, FreeOptions, Verdict};
 use colltrans::{Pose, QueryError, Solid};
 use glam::{DMat3, DVec3};
 
@@ -23,7 +23,7 @@ pub(super) fn larger(
     let [a, b] = [0, 1].map(|k| bodies.solids[k].at(bodies.poses[k]));
     // A body may vanish with this tolerance.
     if let Err(FreeError::Query(QueryError::NothingLeft { .. })) =
-        FreeDirections::of(&a, &b, options)
+        FreeDirections::compute(&a, &b, options)
     {
         return Ok(0);
     }
@@ -73,7 +73,7 @@ fn asked(
     [p, q]: [Pose; 2],
     options: FreeOptions,
 ) -> Result<FreeDirections<'_>, String> {
-    let all = FreeDirections::of(&a.at(p), &b.at(q), options).map_err(|e| e.to_string())?;
+    let all = FreeDirections::compute(&a.at(p), &b.at(q), options).map_err(|e| e.to_string())?;
     all.verify().map_err(|e| e.to_string())?;
     Ok(all)
 }
@@ -89,7 +89,8 @@ fn compare(
     let mut compared = 0;
     for _ in 0..DIRECTIONS {
         let d = direction(here, rng);
-        let says = [here.says(d), there.says(map(d))].map(|says| says.map_err(|e| e.to_string()));
+        let says =
+            [here.classify(d), there.classify(map(d))].map(|says| says.map_err(|e| e.to_string()));
         let [one, other] = says;
         let (one, other) = (one?, other?);
         if one == Verdict::Undecided || other == Verdict::Undecided {

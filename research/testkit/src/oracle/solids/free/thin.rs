@@ -2,11 +2,11 @@
 //! intersection of its planes, is free, and has blocked directions on all sides. Conversely, every isolated
 //! free direction must be reported.
 
-use colltrans::free::{FreeArc, FreeDirections, FreePlane, FreePoint, PlaneFacets};
+use colltrans::removal::directions::{FreeArc, FreeDirections, FreePlane, FreePoint, PlaneFacets};
 use colltrans::{Placed, Solid};
 use glam::DVec3;
 
-use super::super::facets::{Judge, Triangle};
+use super::super::facets::{FacetJudge, Triangle};
 use super::{facets, is_free_along};
 use crate::oracle::exact::{Dyadic, Vector, place};
 
@@ -62,7 +62,7 @@ fn negated(v: &Vector) -> Vector {
 
 impl World {
     fn is_free(&self, d: &Vector) -> bool {
-        is_free_along(&self.facets, &Judge::along(d.clone()))
+        is_free_along(&self.facets, &FacetJudge::along(d.clone()))
     }
 
     /// Returns the exact normal of a plane.
@@ -178,8 +178,8 @@ impl World {
         let ways = [-2.0, -1.0, -0.3, 0.0, 0.3, 1.0, 2.0].map(|t| [u + v * t, v + u * t]);
         let around = ways.into_iter().flatten().flat_map(|way| [way, -way]);
         let mut around = around.map(|way| displaced_slightly(&exactly, &Vector::new(way)));
-        let told = all.points().iter().any(|point| all.is_at(point, d) == Ok(true));
-        let near = all.arcs().iter().any(|arc| all.is_on(arc, d) == Ok(true));
+        let told = all.points().iter().any(|point| all.is_at_point(point, d) == Ok(true));
+        let near = all.arcs().iter().any(|arc| all.is_on_arc(arc, d) == Ok(true));
         if !told && !near && !around.any(|d| self.is_free(&d)) {
             return Err(format!("{d} is free and alone, but not told"));
         }

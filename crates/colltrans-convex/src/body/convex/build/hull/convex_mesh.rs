@@ -21,7 +21,7 @@ use colltrans_kernel::topology::Topology;
 pub(super) fn simplicial_of_mesh(points: &[DVec3], topology: &Topology) -> Option<Simplicial> {
     let mesh = TriangleMesh { points, topology };
     let count = topology.face_count() as u32;
-    if !(0..count).all(|f| topology.face(f).len() == 3) {
+    if !(0..count).all(|f| topology.face_half_edges(f).len() == 3) {
         return None;
     }
     let middle = points.iter().sum::<DVec3>() / points.len() as f64;
@@ -40,7 +40,7 @@ struct TriangleMesh<'a> {
 
 impl TriangleMesh<'_> {
     fn corner_vertices(&self, face: u32) -> [u32; 3] {
-        let first = self.topology.face(face).start;
+        let first = self.topology.face_half_edges(face).start;
         [first, first + 1, first + 2].map(|h| self.topology.origin(h))
     }
 
@@ -58,7 +58,7 @@ impl TriangleMesh<'_> {
     /// half-edge with the smaller number.
     fn bends_outwards(&self, face: u32) -> bool {
         let [a, b, c] = self.corner_points(face);
-        self.topology.face(face).all(|h| {
+        self.topology.face_half_edges(face).all(|h| {
             let twin = self.topology.half_edge(h).twin;
             if twin < h {
                 return true;
@@ -83,7 +83,7 @@ impl TriangleMesh<'_> {
     /// Returns a face as a triangle of a simplicial hull.
     fn simplicial_triangle(&self, face: u32) -> Triangle {
         let neighbour = |h: u32| self.topology.half_edge(self.topology.half_edge(h).twin).face;
-        let first = self.topology.face(face).start;
+        let first = self.topology.face_half_edges(face).start;
         let neighbours = [first, first + 1, first + 2].map(neighbour);
         let normal = triangle_normal(self.corner_points(face)).normalize_or_zero();
         Triangle { corners: self.corner_vertices(face), neighbours, normal }

@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::quickhull::{Simplicial, Triangle, simplicial_hull};
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 /// Marks a triangle without a region, and an unused entry.
 const NONE: u32 = u32::MAX;
@@ -99,7 +99,7 @@ fn grow_region(
     members.push(seed);
     let mut k = 0;
     while k < members.len() {
-        work::count(1);
+        visit_counter::count_visits(1);
         for n in triangles[members[k] as usize].neighbours {
             let free = regions.region_of[n as usize] == NONE;
             if free && lies_in_plane(points, &triangles[n as usize], plane, tolerance) {
@@ -158,7 +158,7 @@ fn trace_rim(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) ->
     let mut corners = Vec::new();
     loop {
         corners.push(triangles[t as usize].corners[side]);
-        work::count(1);
+        visit_counter::count_visits(1);
         // Rotate around the end of the edge, triangle by triangle, to the next edge of the rim.
         side = (side + 1) % 3;
         loop {
@@ -166,7 +166,7 @@ fn trace_rim(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) ->
             if regions.region_of[other as usize] != region {
                 break;
             }
-            work::count(1);
+            visit_counter::count_visits(1);
             let pivot = triangles[t as usize].corners[side];
             let at = triangles[other as usize].corners.iter().position(|&c| c == pivot)?;
             (t, side) = (other, at);

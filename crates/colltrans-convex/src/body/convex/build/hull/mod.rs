@@ -24,7 +24,7 @@ use crate::body::Aabb;
 use crate::body::error::{BuildError, TopologyError};
 use colltrans_kernel::noise;
 use colltrans_kernel::range::is_in_exact_range;
-use colltrans_kernel::topology::{Topology, bucket};
+use colltrans_kernel::topology::{Topology, group_by_key};
 use quickhull::Simplicial;
 use violation::Gauge;
 pub(super) use violation::Locator;
@@ -246,7 +246,7 @@ fn vertices_and_faces(
     if large {
         (face_start, face_vertices) = sorted_by_vertex(&face_start, &face_vertices);
     }
-    let topology = Topology::sphere(vertices.len(), face_start, face_vertices)?;
+    let topology = Topology::from_sphere_faces(vertices.len(), face_start, face_vertices)?;
     Ok((vertices, topology))
 }
 
@@ -264,8 +264,8 @@ pub(super) const MAX_INPUT_ORDER: usize = 500;
 /// Sorts points along a space-filling curve (the Morton curve).
 fn sort_along_curve(points: &[DVec3], vertices: &mut [u32]) {
     let at = |v: u32| points[v as usize];
-    let bounds = Aabb::of_points(vertices.iter().map(|&v| at(v)));
-    let scale = f64::from(1 << 20) / bounds.size();
+    let bounds = Aabb::from_points(vertices.iter().map(|&v| at(v)));
+    let scale = f64::from(1 << 20) / bounds.side_lengths();
     // Casts saturate: all coordinates along an axis without extent are 0.
     let key = |&v: &u32| {
         let cell = (at(v) - bounds.low) * scale;
@@ -293,7 +293,7 @@ fn sorted_by_vertex(face_start: &[u32], face_vertices: &[u32]) -> (Vec<u32>, Vec
     };
     let lowest = (0..face_start.len() as u32 - 1).map(|f| face(f).iter().min().copied());
     let most = face_vertices.iter().max().map_or(0, |&v| v as usize);
-    let (_, order) = bucket(most + 1, lowest.map(Option::unwrap_or_default));
+    let (_, order) = group_by_key(most + 1, lowest.map(Option::unwrap_or_default));
     let mut start = Vec::with_capacity(face_start.len());
     start.push(0);
     let mut vertices = Vec::with_capacity(face_vertices.len());

@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 /// Maximum number of neighbours that are scanned one by one.
 const MAX_SCANNED: usize = 32;
@@ -70,7 +70,7 @@ impl Neighbours {
         bound: impl Fn(&PlaneNode) -> f64,
     ) -> (f64, usize) {
         let scan = |range: Range<usize>, best: &mut (f64, usize)| {
-            work::count(range.len());
+            visit_counter::count_visits(range.len());
             for &neighbour in &self.faces[range] {
                 let value = value(neighbour as usize);
                 if value > best.0 {
@@ -86,7 +86,7 @@ impl Neighbours {
         let nodes = &self.trees[&face];
         let mut next = 0;
         while let Some(node) = nodes.get(next) {
-            work::count(1);
+            visit_counter::count_visits(1);
             if bound(node) <= best.0 {
                 next = node.end;
                 continue;

@@ -7,7 +7,7 @@ use super::violation::{Projection, distance_to_segment};
 use super::{IndexedHull, MAX_DISTANCE_FACTOR, with_violation, witness_rounding};
 use colltrans_kernel::predicates::orient2d as orientation;
 use colltrans_kernel::topology::Topology;
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 /// Computes the hull of points whose affine hull is `flat`.
 pub(super) fn flat_hull(points: &[DVec3], kept: &[u32], flat: Flat, tolerance: f64) -> IndexedHull {
@@ -45,8 +45,8 @@ fn is_on_segment(p: DVec3, a: DVec3, b: DVec3) -> bool {
     is_between && in_line(&|v| v.xy()) && in_line(&|v| v.yz()) && in_line(&|v| v.zx())
 }
 
-/// Computes a polygon without corners within the tolerance of an edge. If this leaves a point too far away, these
-/// corners are kept.
+/// Computes the hull of points in a plane as a polygon. Drops corners that are within the tolerance of an edge, unless
+/// this leaves a point farther than [`MAX_DISTANCE_FACTOR`] tolerances from the polygon.
 fn polygon_hull(points: &[DVec3], kept: &[u32], normal: DVec3, tolerance: f64) -> IndexedHull {
     let plane = PlanarPoints { points, projection: Projection::for_normal(normal) };
     let chain = plane.corner_chain(kept);
@@ -85,8 +85,9 @@ impl PlanarPoints<'_> {
         let back: Vec<u32> = face_vertices.iter().rev().copied().collect();
         face_vertices.extend(back);
         let count = corners.len() as u32;
-        let topology = Topology::sphere(vertices.len(), vec![0, count, 2 * count], face_vertices)
-            .expect("the front and the back of a polygon are a closed surface");
+        let topology =
+            Topology::from_sphere_faces(vertices.len(), vec![0, count, 2 * count], face_vertices)
+                .expect("the front and the back of a polygon are a closed surface");
         let hull =
             IndexedHull { dimension: 2, vertices, topology, violation: 0.0, input_excess: 0.0 };
         with_violation(self.points, hull, kept.iter().copied(), tolerance).0
@@ -118,7 +119,7 @@ impl PlanarPoints<'_> {
         let mut corners: Vec<u32> = Vec::with_capacity(chain.len());
         for &c in chain {
             while let [.., a, b] = corners[..] {
-                work::count(1);
+                visit_counter::count_visits(1);
                 if !is_on_edge(a, b, c) {
                     break;
                 }
@@ -147,7 +148,7 @@ fn half_chain(order: impl Iterator<Item = u32>, project: &dyn Fn(u32) -> DVec2) 
     let mut chain: Vec<u32> = Vec::new();
     for i in order {
         while let [.., a, b] = chain[..] {
-            work::count(1);
+            visit_counter::count_visits(1);
             if orientation(project(a), project(b), project(i)) > 0.0 {
                 break;
             }

@@ -17,7 +17,7 @@ use super::cone_sectors::ConeSectors;
 use super::distinct_sorted;
 use crate::body::Aabb;
 use colltrans_kernel::plane::triangle_normal;
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 /// Marks the end of a list, and a missing number.
 const NONE: u32 = u32::MAX;
@@ -77,17 +77,20 @@ pub(super) enum Flat {
     Plane(DVec3),
 }
 
-/// Number of points per inserted point at which insertion changes from breadth first to depth first.
+/// Number of points for each point that is inserted breadth first. All later points are inserted depth first.
 ///
-/// Depth first, the triangles examined are still in the cache (1.5 times faster for spheres of 200,000 points). But
-/// of two rings, one would be completed before the other. Then every point of the other ring sees a fan over half
-/// of the first one, and each orphan is compared with the new fan, which is quadratic. Breadth first, both rings
-/// grow together. Patches with a bounded number of points limit the cost.
+/// - Depth first, the triangles examined are still in the cache (1.5 times faster for spheres of 200,000 points).
+///   But if the points form two rings, the first ring is completed before the second. Then a large fan over half of
+///   the first ring is visible from each point of the second. Each orphan is compared with the new fan, which takes
+///   quadratic time.
+/// - Breadth first, both rings grow together. Afterwards about this number of points remains for each inserted
+///   point, which limits the cost of inserting them depth first.
 const POINTS_PER_PATCH: u32 = 128;
 
-/// Maximum number of triangles of a new cone that are all compared with each orphan, which joins the one it is
-/// farthest outside of. In a larger cone, [`ConeSectors`] finds the visible triangle. Such cones occur for two
-/// rings close together, as along a chamfer, where a patch of one ring is still completed before that of the other.
+/// Maximum number of triangles of a new cone for which each orphan is compared with all of them. The orphan is
+/// assigned to the triangle that it is farthest outside of. In a larger cone, [`ConeSectors`] finds the visible
+/// triangle. Such cones occur for two rings close together, as along a chamfer, where a patch of one ring is still
+/// completed before that of the other.
 const MAX_SCANNED_CONE: usize = 16;
 
 /// Computes the hull of the points in `kept`. Points within the tolerance of a triangle, and outside none by more,
@@ -184,12 +187,12 @@ struct HullBuilder<'a> {
 
 impl<'a> HullBuilder<'a> {
     fn new(points: &'a [DVec3], kept: &[u32], forced: &'a [u32], tolerance: f64) -> Self {
-        let bounds = Aabb::of_points(kept.iter().map(|&i| points[i as usize]));
+        let bounds = Aabb::from_points(kept.iter().map(|&i| points[i as usize]));
         Self {
             points,
             forced,
             tolerance,
-            extent: bounds.size().length(),
+            extent: bounds.side_lengths().length(),
             triangles: Vec::new(),
             pending: VecDeque::new(),
             next: vec![NONE; points.len()],
@@ -232,8 +235,8 @@ impl<'a> HullBuilder<'a> {
         let [a, b, c] = corners.map(|i| self.point_at(i));
         let normal = triangle_normal([a, b, c]);
         let area = normal.length();
-        // The relative rounding errors of the product of the two shorter edges, and of the distance of a point
-        // `extent` away, are a few units in the last place.
+        // The rounding error of `normal` is a few units in the last place of the product of the two shorter edges. In
+        // the distance of a point it is multiplied by at most `extent` and divided by `area`.
         let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| p.distance_squared(q));
         let product = (ab * bc).min(bc * ca).min(ca * ab).sqrt();
         let sign_error = 16.0 * f64::EPSILON * product * self.extent / area;
@@ -272,7 +275,7 @@ impl<'a> HullBuilder<'a> {
         let mut best = (if is_forced { f64::NEG_INFINITY } else { self.tolerance }, NONE);
         let mut is_near = false;
         for face in faces {
-            work::count(1);
+            visit_counter::count_visits(1);
             let distance = self.plane_distance(face, p);
             if distance > best.0 && self.is_outside(face, p, distance) {
                 best = (distance, face);
@@ -331,7 +334,7 @@ impl<'a> HullBuilder<'a> {
                 self.pending.push_back(face);
                 return;
             }
-            work::count(1);
+            visit_counter::count_visits(1);
             if self.is_visible_from(face, p) {
                 stack.extend(self.triangles[face as usize].neighbours);
             }
@@ -389,7 +392,7 @@ impl<'a> HullBuilder<'a> {
             let GrowingTriangle { corners, neighbours, .. } = self.triangles[face as usize];
             for side in 0..3 {
                 let other = neighbours[side];
-                work::count(1);
+                visit_counter::count_visits(1);
                 if self.triangles[other as usize].stamp != self.insertion {
                     let is_visible = self.is_visible_from(other, p);
                     self.set_visibility(other, is_visible);
@@ -434,7 +437,7 @@ impl<'a> HullBuilder<'a> {
 
     /// Builds the index of a cone's triangles by sector.
     fn cone_sectors(&self, apex: DVec3, cone: &[u32]) -> ConeSectors {
-        work::count(cone.len());
+        visit_counter::count_visits(cone.len());
         let start = |&face: &u32| (self.point_at(self.triangles[face as usize].corners[0]), face);
         ConeSectors::new(apex, cone.iter().map(start))
     }

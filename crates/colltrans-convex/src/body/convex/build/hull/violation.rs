@@ -13,7 +13,7 @@ use colltrans_kernel::determinant::triangle_area;
 use colltrans_kernel::plane::polygon_normal;
 use colltrans_kernel::predicates::orient2d as orientation_in_plane;
 use colltrans_kernel::topology::Topology;
-use colltrans_kernel::work;
+use colltrans_kernel::visit_counter;
 
 /// Locator of the face that a ray from an inner point passes. It walks from face to face.
 ///
@@ -47,7 +47,7 @@ impl Locator {
             (
                 normal,
                 corners.map(|p| normal.dot(p - center)).sum::<f64>()
-                    / topology.face(face).len() as f64,
+                    / topology.face_half_edges(face).len() as f64,
             )
         };
         let faces = 0..topology.face_count() as u32;
@@ -55,7 +55,7 @@ impl Locator {
         let mut neighbours = Vec::new();
         for face in faces.clone() {
             let twin_face = |h: u32| topology.half_edge(topology.half_edge(h).twin).face;
-            neighbours.extend(topology.face(face).map(twin_face));
+            neighbours.extend(topology.face_half_edges(face).map(twin_face));
             neighbour_start.push(neighbours.len() as u32);
         }
         let planes: Vec<(DVec3, f64)> = faces.map(plane).collect();
@@ -183,7 +183,7 @@ impl<'a> Gauge<'a> {
         let has_budget = self.inside_budget >= count && self.topology.face_count() > 2;
         if has_budget {
             self.inside_budget -= count;
-            work::count(count);
+            visit_counter::count_visits(count);
         }
         has_budget && self.contains_exactly(p)
     }
@@ -234,7 +234,7 @@ impl<'a> Gauge<'a> {
             return 0.0;
         }
         let faces = 0..self.topology.face_count();
-        work::count(2 * self.topology.edge_count());
+        visit_counter::count_visits(2 * self.topology.edge_count());
         faces.map(|face| self.bound_by_face(p, face, FanSearch::All)).fold(f64::INFINITY, f64::min)
     }
 
@@ -243,7 +243,7 @@ impl<'a> Gauge<'a> {
     fn contains_exactly(&self, p: DVec3) -> bool {
         let mut is_below_some = false;
         for face in 0..self.topology.face_count() as u32 {
-            let range = self.topology.face(face);
+            let range = self.topology.face_half_edges(face);
             let at = |h: u32| self.vertices[self.topology.origin(h) as usize];
             for h in range.start + 1..range.end - 1 {
                 let height = orientation(at(range.start), at(h), at(h + 1), p);
@@ -259,7 +259,7 @@ impl<'a> Gauge<'a> {
     /// Returns the smallest bound from triangles of a face's fan. It is 0 if the point lies in one of them, exactly;
     /// this is tested only where it makes a difference.
     fn bound_by_face(&self, p: DVec3, face: usize, search: FanSearch) -> f64 {
-        let range = self.topology.face(face as u32);
+        let range = self.topology.face_half_edges(face as u32);
         let corner =
             |k: usize| self.vertices[self.topology.origin(range.start + k as u32) as usize];
         let normal = self.locator.planes[face].0;
@@ -302,7 +302,7 @@ enum FanSearch {
 fn fan_triangle(first: DVec2, count: usize, foot: DVec2, corner: impl Fn(usize) -> DVec2) -> usize {
     let (mut low, mut high) = (1, count - 1);
     while low + 1 < high {
-        work::count(1);
+        visit_counter::count_visits(1);
         let middle = low.midpoint(high);
         if orientation_in_plane(first, corner(middle), foot) >= 0.0 {
             low = middle;

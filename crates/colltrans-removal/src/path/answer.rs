@@ -1,0 +1,263 @@
+//! Removal paths as an answer: legs with their proofs.
+
+use std::sync::atomic::AtomicBool;
+
+use glam::DVec3;
+
+use super::candidates::{candidate_directions, wall_axes};
+use super::enclosed::{Enclosure, EnclosureResult, NoRemovalPath, cell_axes};
+use super::options::{Order, RemovalOptions, SearchWork};
+use super::pairs::{BodyPair, bounding_box};
+use super::proof::{LegProof, certified_legs};
+use super::search::{Group, Move, Search, SearchEnd, SearchScale};
+use crate::directions::FreeError;
+use colltrans_convex::body::{Aabb, Placed};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_solid::SolidCast;
+use colltrans_solid::body::{AsSolid, Solid};
+
+/// Tolerance of the search, as a fraction of the tolerance of the answer.
+const SEARCH_TOLERANCE_SHARE: f64 = 0.8;
+/// Maximum number of bodies of a search.
+pub(super) const MAX_BODIES: usize = Group::BITS as usize - 1;
+
+/// Moves one after another. The last one has no end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RemovalPath {
+    /// Moves in order.
+    pub legs: Vec<Leg>,
+    /// Tolerance. All bodies are offset inwards by half of it.
+    pub tolerance: f64,
+    /// Amounts of work of the search.
+    pub searched: SearchWork,
+}
+
+/// Move of some bodies together along a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Leg {
+    /// Indices of the bodies that move, in increasing order. The last leg removes them.
+    pub bodies: Vec<usize>,
+    /// Direction, of length 1 up to rounding.
+    pub direction: DVec3,
+    /// Length of the move, infinite for the last leg.
+    pub travel: f64,
+    /// Exact vector of the move, or the direction of the last leg.
+    pub motion: DVec3,
+    /// One proof for each pair of a moving body and a body at rest.
+    pub proofs: Vec<LegProof>,
+}
+
+/// Answer whether a removal path in several moves exists.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RemovalSearch {
+    /// A removal path.
+    Found(RemovalPath),
+    /// It is proven that no sequence of translations separates the two bodies.
+    Proven(NoRemovalPath),
+    /// The search found no path. One may exist.
+    NotFound {
+        /// Amounts of work of the search.
+        searched: SearchWork,
+    },
+}
+
+impl RemovalSearch {
+    /// Searches for a sequence of translations that removes one body from another. A convex body is treated
+    /// as a solid.
+    ///
+    /// The first body has the index 0 and moves. The second one has the index 1 and is fixed.
+    ///
+    /// # Errors
+    /// Returns [`FreeError::Query`] for bodies or options that a cast rejects, [`FreeError::Open`] for an
+    /// open shell, and [`FreeError::Overlapping`] if the bodies overlap at the start with 0.8 of the
+    /// tolerance.
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::removal::path::{RemovalOptions, WaysOut};
+    /// use colltrans::{ConvexPolyhedron, Pose, Solid};
+    ///
+    /// // A bar in a channel whose top is closed except for a window at one end.
+    /// let block = |low: [f64; 3], high: [f64; 3]| {
+    ///     ConvexPolyhedron::cuboid(DVec3::from(low), DVec3::from(high))
+    /// };
+    /// let walls = [
+    ///     block([-1.0, -1.0, -1.0], [9.0, 4.0, 0.0])?,
+    ///     block([-1.0, -1.0, 0.0], [9.0, 0.0, 3.0])?,
+    ///     block([-1.0, 3.0, 0.0], [9.0, 4.0, 3.0])?,
+    ///     block([-1.0, 0.0, 0.0], [0.0, 3.0, 3.0])?,
+    ///     block([8.0, 0.0, 0.0], [9.0, 3.0, 3.0])?,
+    ///     block([-1.0, -1.0, 3.0], [5.0, 4.0, 4.0])?,
+    /// ];
+    /// let channel = Solid::from_pieces(&walls)?;
+    /// let bar = block([0.5, 0.5, 0.5], [2.5, 2.5, 2.5])?;
+    /// let at = Pose::IDENTITY;
+    /// let WaysOut::Found(way) = WaysOut::of(&bar.at(at), &channel.at(at), &RemovalOptions::default())?
+    /// else {
+    ///     unreachable!("the bar leaves along x, then up")
+    /// };
+    /// assert_eq!(way.legs.len(), 2);
+    /// assert_eq!(way.legs[1].travel, f64::INFINITY);
+    /// let bar = Solid::from_pieces([&bar])?;
+    /// way.verify(&[bar.at(at), channel.at(at)])?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn search<A: AsSolid, B: AsSolid>(
+        moving: &Placed<'_, A>,
+        fixed: &Placed<'_, B>,
+        options: &RemovalOptions,
+    ) -> Result<Self, FreeError> {
+        let a = moving.body.as_solid().map_err(QueryError::from)?.at(moving.pose);
+        let b = fixed.body.as_solid().map_err(QueryError::from)?.at(fixed.pose);
+        Self::search_among(&[a, b], &[1], options, None)
+    }
+
+    /// Searches for a removal path of some of several bodies. Bodies in `fixed` do not move. All others may
+    /// move, alone or together, before some of them are removed.
+    ///
+    /// Motions are relative to a *base*, which is the first fixed body, or otherwise the largest one. Among
+    /// more than two bodies, those that overlap at the start move together. For fewer than two or more than
+    /// 63 bodies the answer is [`Self::NotFound`] without a search.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::of`], and [`FreeError::Cancelled`] after the flag is set. Overlaps of
+    /// more than two bodies are not errors.
+    pub fn search_among(
+        bodies: &[Placed<'_, Solid>],
+        fixed: &[usize],
+        options: &RemovalOptions,
+        cancel: Option<&AtomicBool>,
+    ) -> Result<Self, FreeError> {
+        if !(2..=MAX_BODIES).contains(&bodies.len()) {
+            return Ok(Self::NotFound { searched: SearchWork::default() });
+        }
+        let wrong = |d: &&DVec3| !(d.is_finite() && d.try_normalize().is_some());
+        if let Some(&direction) = options.directions.iter().find(wrong) {
+            return Err(QueryError::Direction { direction }.into());
+        }
+        let tolerance = largest_tolerance(bodies, options)?;
+        let boxes: Vec<Aabb> = bodies.iter().map(bounding_box).collect();
+        let scale = search_scale(bodies, tolerance, options.step);
+        let mut pairs = Vec::new();
+        for j in 1..bodies.len() {
+            for i in 0..j {
+                let both = [bodies[i], bodies[j]];
+                pairs.push(BodyPair::new(
+                    both,
+                    [boxes[i], boxes[j]],
+                    (SEARCH_TOLERANCE_SHARE * tolerance, scale.step),
+                )?);
+            }
+        }
+        if let [BodyPair { overlap: Some(place), .. }] = pairs[..] {
+            return Err(FreeError::Overlapping { place });
+        }
+        let mask = fixed.iter().filter(|&&k| k < bodies.len()).fold(0, |mask, &k| mask | 1 << k);
+        let first_fixed = fixed.iter().copied().find(|&k| k < bodies.len());
+        let base = first_fixed.unwrap_or_else(|| largest_body(bodies));
+        let directions = candidate_directions(bodies, &options.directions);
+        let roles = (bodies.len(), mask | 1 << base, base);
+        let mut search = Search::new(pairs, roles, directions, scale, options, cancel);
+        let certified = |moves: &[Move]| certified_legs(bodies, moves, tolerance);
+        let mut provable = bodies.len() == 2 && options.cells > 0;
+        let fewest = options.order == Some(Order::FewestLegs);
+        let (mut cells, mut proposal, mut places) =
+            (None, None, RemovalOptions::FIRST_PROOF_PLACEMENTS);
+        let mut legs = loop {
+            let run = search.run(if provable { places } else { usize::MAX }, certified)?;
+            if let SearchEnd::Found(legs) = run {
+                break Some(legs);
+            }
+            let ended = matches!(run, SearchEnd::Ended);
+            if provable {
+                let enclosure = match &mut cells {
+                    Some(enclosure) => enclosure,
+                    none => {
+                        let axes =
+                            cell_axes(&wall_axes(&bodies[base], box_center(&bodies[1 - base])));
+                        let both = [bodies[0], bodies[1]];
+                        none.insert(Enclosure::new(both, tolerance, scale.far, axes)?)
+                    }
+                };
+                let own =
+                    if ended { usize::MAX } else { RemovalOptions::CELLS_PER_PLACEMENT * places };
+                match enclosure.continue_search(own.min(options.cells), cancel)? {
+                    Some(EnclosureResult::Proven(proof)) => return Ok(Self::Proven(proof)),
+                    Some(EnclosureResult::Way(found)) => {
+                        (provable, proposal) = (false, Some(found))
+                    }
+                    None => (),
+                }
+            }
+            // A path through cells may have more legs than necessary.
+            if let Some(proposal) = proposal.take_if(|_| ended || !fewest) {
+                let way = (&proposal[..], scale.grid, if base == 1 { 1.0 } else { -1.0 });
+                if let Some(legs) = search.shortened_path(1 - base, way, certified)? {
+                    break Some(legs);
+                }
+            }
+            if ended {
+                break None;
+            }
+            places *= 2;
+        };
+        // More than two bodies have too many pairs.
+        if legs.is_none() && bodies.len() == 2 && search.searched.complete {
+            legs = search.last_leg_in_any_direction(certified)?;
+        }
+        let searched = search.searched;
+        Ok(match legs {
+            Some(legs) => Self::Found(RemovalPath { legs, tolerance, searched }),
+            None => Self::NotFound { searched },
+        })
+    }
+}
+
+/// Returns the tolerance of all casts: the given one, or the largest default of all pairs.
+fn largest_tolerance(
+    bodies: &[Placed<'_, Solid>],
+    options: &RemovalOptions,
+) -> Result<f64, QueryError> {
+    let mut most = 0.0_f64;
+    for j in 1..bodies.len() {
+        for i in 0..j {
+            let cast = Cast::new(bodies[i], bodies[j], DVec3::Z)?;
+            most = most.max(match options.tolerance {
+                // An error shows the given tolerance, not the one of the search.
+                Some(given) => cast.with_tolerance(given)?.tolerance(),
+                None => cast.tolerance(),
+            });
+        }
+    }
+    Ok(most)
+}
+
+fn box_volume(body: &Placed<'_, Solid>) -> f64 {
+    body.body.bounds().side_lengths().element_product()
+}
+
+fn largest_body(bodies: &[Placed<'_, Solid>]) -> usize {
+    let volume = |k: &usize| box_volume(&bodies[*k]);
+    (0..bodies.len()).rev().max_by(|a, b| volume(a).total_cmp(&volume(b))).unwrap_or(0)
+}
+
+/// Returns the center of a body's bounding box, in the world frame.
+fn box_center(body: &Placed<'_, Solid>) -> DVec3 {
+    body.pose.transform_point(body.body.bounds().center())
+}
+
+fn search_scale(bodies: &[Placed<'_, Solid>], tolerance: f64, step: f64) -> SearchScale {
+    let size = |body: &Placed<'_, Solid>| body.body.bounds().side_lengths().max_element();
+    let far = bodies.iter().map(size).sum::<f64>() * 2.0;
+    let step = step * bodies.iter().map(size).fold(0.0, f64::max);
+    // Without a tolerance there is no slack. The grid only has to keep sums exact.
+    let off = if tolerance > 0.0 { (0.1 * tolerance).min(0.1 * step) } else { 1e-6 * step };
+    let fine = if tolerance > 0.0 { off / 16.0 } else { far * f64::EPSILON * 4096.0 };
+    SearchScale { far, step, grain: step, off, grid: power_of_two(fine) }
+}
+
+/// Returns the largest power of two that does not exceed a number.
+fn power_of_two(x: f64) -> f64 {
+    f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & (0x7ff << 52))
+}

@@ -40,9 +40,9 @@ fn cast(cube: &ConvexPolyhedron, start: DVec3) -> Cast<'_> {
 
 /// Runs a function on a cast of a rotating cube.
 fn motion(cube: &ConvexPolyhedron, run: impl FnOnce(&MotionCast<'_>) -> String) -> String {
-    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 2.0).expect("a turn");
+    let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 2.0).expect("a turn");
     let fixed = Pose::from_translation(DVec3::X * 1.2).expect("a pose");
-    run(&MotionCast::new(cube.along(&turn), cube.at(fixed)).expect("a query"))
+    run(&MotionCast::new(cube.with_motion(&turn), cube.at(fixed)).expect("a query"))
 }
 
 /// Reads lines of a batch.
@@ -108,7 +108,7 @@ pub(crate) fn cases(bytes: &[u8]) {
         vec![
             cast(&cube, DVec3::new(-3.1, 0.3, 0.1)).to_json(),
             cast(&cube, DVec3::new(0.5, 0.3, 0.1)).to_json(),
-            motion(&cube, |cast| MotionCase::of(cast).to_json()),
+            motion(&cube, |cast| MotionCase::from_cast(cast).to_json()),
         ]
     });
     let Some(text) = text_of(bytes, &SEEDS) else { return };

@@ -2,7 +2,7 @@
 //!
 //! - [`read()`] reads a folder of meshes, a manifest, URDF, glTF or 3MF. It returns an
 //!   [`Assembly`](colltrans_assembly::Assembly), which has parts in one world frame and one unit.
-//! - [`read::robot`] reads URDF. It returns a [`Robot`], which has links, joints, and queries about paths
+//! - [`read::read_robot`] reads URDF. It returns a [`Robot`], which has links, joints, and queries about paths
 //!   ([`robot`]).
 //!
 //! Round shapes are replaced by polyhedra. For a [`Robot`] they are circumscribed, so that a path that is

@@ -1,7 +1,7 @@
 //! Queries about two parts and a direction: the layer between assemblies and `colltrans`.
 //!
 //! - With a tolerance `L` every body is shrunk by `L / 2`, or by its own chord error ([`Fit`]).
-//! - With a minimum gap bodies keep their shape. Queries then use [`Cast::keeping`], and boxes are grown by
+//! - With a minimum gap bodies keep their shape. Queries then use [`Cast::with_min_gap`], and boxes are grown by
 //!   half of the gap.
 //! - A pair with a tolerance of its own, or with a screw that is replaced by its core, has bodies of its own
 //!   ([`roles`](crate::roles)). They serve only queries of this pair.
@@ -62,7 +62,7 @@ impl Fit {
     ///
     /// That tolerance is the largest of:
     /// - for each file, `2^-21` of its largest coordinate in single precision, otherwise four times
-    ///   [`Mesh::precision`](colltrans_mesh::Mesh::precision), as in [`between`](colltrans_mesh::body::between);
+    ///   [`Mesh::precision`](colltrans_mesh::Mesh::precision), as in [`between`](colltrans_mesh::body::cast_between);
     /// - `2^-21` of the assembly's extent, if a part is in single precision, has no file, or is rotated by a pose;
     /// - `2^-46` of the largest coordinate in the world, for the rounding of doubles.
     pub fn default_for(assembly: &Assembly) -> Self {
@@ -446,7 +446,7 @@ impl<'a> Bodies<'a> {
         found
     }
 
-    /// Returns the set of parts marked in `there`, for [`first_ahead`](Self::first_ahead).
+    /// Returns the set of parts marked in `there`, for [`first_ahead`](Self::first_part_ahead).
     pub(crate) fn remaining_parts(&self, there: &[bool]) -> RemainingBoxes {
         self.tree.remaining_boxes(there)
     }
@@ -456,7 +456,7 @@ impl<'a> Bodies<'a> {
         self.tree.remove(living, part);
     }
 
-    /// Computes the bounds of the tree nodes for boxes given by part, for [`visit_high`](Self::visit_high).
+    /// Computes the bounds of the tree nodes for boxes given by part, for [`visit_high`](Self::visit_highest_first).
     pub(crate) fn node_bounds(&self, boxes: &[Aabb]) -> Vec<Aabb> {
         self.tree.bounds_of(boxes)
     }
@@ -574,7 +574,7 @@ impl<'a> Bodies<'a> {
     /// Returns how far part `a` moves along unit direction `d` before `b` stops it.
     ///
     /// Contacts at `before` or beyond need not be reported. Parts that overlap at the start are
-    /// [`Room::Overlapping`]. If `start` is [`StartOverlap::Ignore`], or the assembly
+    /// [`FreeTravel::Overlapping`]. If `start` is [`StartOverlap::Ignore`], or the assembly
     /// [ignores](Assembly::with_ignored) the overlap, only contacts that begin later stop the part. Motions
     /// that deepen an ignored overlap stop it too, if the assembly ignores the overlap.
     pub fn free_travel(
@@ -838,7 +838,7 @@ impl<'a> Bodies<'a> {
         self.direction_extents(a, d).travel_beyond(&self.direction_extents(b, d))
     }
 
-    /// Computes [`Self::past`] with part `a` displaced by `by`.
+    /// Computes [`Self::travel_beyond`] with part `a` displaced by `by`.
     pub(crate) fn travel_beyond_displaced(
         &self,
         a: usize,
@@ -851,7 +851,7 @@ impl<'a> Bodies<'a> {
         self.travel_beyond_moved((a, |p| p + by), b, d, sums)
     }
 
-    /// Computes [`Self::past`] with the vertices of part `a` mapped by `moved`. Each mapped vertex has an
+    /// Computes [`Self::travel_beyond`] with the vertices of part `a` mapped by `moved`. Each mapped vertex has an
     /// error of at most `sums - 9` roundings of the size of its coordinates.
     pub(crate) fn travel_beyond_moved(
         &self,
@@ -920,7 +920,7 @@ pub(crate) struct DirectionExtents {
 
 impl DirectionExtents {
     /// Checks whether a part within `bounds` could raise the distance `found` that this part must move
-    /// ([`past`](Self::past)). `reach` is the largest coordinate of any part, so that the rounding errors are
+    /// ([`past`](Self::travel_beyond)). `reach` is the largest coordinate of any part, so that the rounding errors are
     /// overestimated.
     pub(crate) fn may_be_behind(&self, bounds: &Aabb, reach: f64, found: &Bounded) -> bool {
         let noise = 64.0 * f64::EPSILON * reach;

@@ -79,7 +79,7 @@ impl AnalysisRequest {
         Self { options, ..self }
     }
 
-    /// Returns the request for the removal of [some parts](Self::wanted).
+    /// Returns the request for the removal of [some parts](Self::selected).
     #[must_use]
     pub fn with_selected(self, wanted: Vec<usize>) -> Self {
         Self { selected: wanted, ..self }
@@ -96,7 +96,7 @@ impl AnalysisRequest {
     /// Analyses the assembly: overlaps, contacts, directions, contacts along these, and a plan.
     ///
     /// # Errors
-    /// Returns the errors of [`Start::new`], [`liaisons`], [`candidates`], [`ContactMatrix::new`], [`disassemble`] and
+    /// Returns the errors of [`Start::new`], [`find_liaisons`], [`find_candidates`], [`ContactMatrix::new`], [`disassemble`] and
     /// [`remove`].
     pub fn analyse<'a>(
         &self,
@@ -118,7 +118,7 @@ impl AnalysisRequest {
     /// Analyses the assembly without a plan, which is left empty.
     ///
     /// # Errors
-    /// Returns the errors of [`ask`](Self::ask).
+    /// Returns the errors of [`ask`](Self::analyse).
     pub fn analyse_without_plan<'a>(
         &self,
         bodies: &'a Bodies<'a>,

@@ -53,7 +53,7 @@ impl RemovalPair {
     /// Computes the free directions, with the tolerance of the bodies. `cancel` stops the computation.
     ///
     /// # Errors
-    /// Returns the errors of [`FreeDirections::of`].
+    /// Returns the errors of [`FreeDirections::compute`].
     pub fn free_directions(
         &self,
         options: FreeOptions,

@@ -1,6 +1,6 @@
 //! Hints about oddities of the parts as read. They are reported and never applied.
 //!
-//! - *Identical*: parts of the same shape ([`likes`]).
+//! - *Identical*: parts of the same shape ([`first_identical_parts`]).
 //! - *Frames*: parts seem to be in their own frames instead of at their places in the assembly. Either equal parts
 //!   coincide, or all parts surround the origin and most pairs overlap deeply.
 //! - *Units*: parts seem to have another unit of length. Either one of two parts of the same shape is 1,000 or 25.4

@@ -1,10 +1,10 @@
 //! Disassembly planning: which parts of an assembly come out, along which directions, in which order, and what blocks
 //! the others.
 //!
-//! Stages of a run, performed by one [`Question`]:
+//! Stages of a run, performed by one [`AnalysisRequest`]:
 //! - [`Assembly`] and [`Fit`] -> [`Bodies`] (queries; [`roles`], [`threads`]) -> [`start`], [`suggest`] (overlaps)
 //! - [`hints`], [`liaisons`] (contacts), [`candidates`] (directions, also of [`cylinders`] and [`inertia`])
-//! - [`matrix`], [`rooms`] (blockers and free travel) -> [`blocking`] (graph, [`constraints`]) -> [`plan`] ([`likes`]),
+//! - [`matrix`], [`travel`] (blockers and free travel) -> [`blocking`] (graph, [`constraints`]) -> [`plan`] ([`identical`]),
 //!   [`map`]
 //! - [`record`] (JSON) and [`report`] (pictures, HTML, animation; feature `report`)
 //!

@@ -170,7 +170,7 @@ impl Part {
 }
 
 /// Factor of [`Mesh::precision`] for the tolerance between two files of text or doubles, as in
-/// [`between`](body::between).
+/// [`between`](body::cast_between).
 const PRECISIONS: f64 = 4.0;
 /// Factor of [`Mesh::precision`] for the tolerance between two files in single precision.
 const SINGLE_PRECISIONS: f64 = 2.0;
@@ -278,7 +278,7 @@ impl Assembly {
 
     /// Returns the assembly with a role, a tolerance or both for each pair of a part of the first group and
     /// one of the second. A later entry for a pair replaces an earlier one. Names are patterns of
-    /// [`group`](Self::group).
+    /// [`group`](Self::parts_named).
     ///
     /// # Errors
     /// - [`AssemblyError::UnknownPart`]
@@ -325,7 +325,7 @@ impl Assembly {
     }
 
     /// Returns the assembly with fixed parts, which a plan never moves. Names are patterns of
-    /// [`group`](Self::group).
+    /// [`group`](Self::parts_named).
     ///
     /// # Errors
     /// [`AssemblyError::UnknownPart`].
@@ -337,7 +337,7 @@ impl Assembly {
     }
 
     /// Returns the assembly with an order constraint: none of the second parts leaves while one of the first
-    /// parts is still in place. Names are patterns of [`group`](Self::group).
+    /// parts is still in place. Names are patterns of [`group`](Self::parts_named).
     ///
     /// # Errors
     /// [`AssemblyError::UnknownPart`], and [`AssemblyError::CyclicOrder`] if the constraints become cyclic.
@@ -353,7 +353,7 @@ impl Assembly {
     }
 
     /// Returns the assembly with parts that leave as one and are not separated afterwards. Names are patterns
-    /// of [`group`](Self::group).
+    /// of [`group`](Self::parts_named).
     ///
     /// # Errors
     /// [`AssemblyError::UnknownPart`], [`AssemblyError::TooFew`] for fewer than two parts,
@@ -363,7 +363,7 @@ impl Assembly {
     }
 
     /// Returns the assembly with a subassembly: its parts leave as one, and are then taken apart separately.
-    /// Names are patterns of [`group`](Self::group).
+    /// Names are patterns of [`group`](Self::parts_named).
     ///
     /// # Errors
     /// Those of [`Self::with_together`], and [`AssemblyError::EmptyName`] for an empty name.

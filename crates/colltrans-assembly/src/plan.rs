@@ -70,8 +70,8 @@ pub use tolerated::ToleratedContact;
 
 /// Interlocked parts: no translation of a group as one body separates it from the other parts.
 ///
-/// The statement holds for all directions if [`proven`](Self::proven) is set, otherwise for the tested directions.
-/// Field [`moves`](Self::moves) reports whether paths of several moves were searched. Parts that move at the same
+/// The statement holds for all directions if [`proven`](Self::proof_cells) is set, otherwise for the tested directions.
+/// Field [`moves`](Self::path_search) reports whether paths of several moves were searched. Parts that move at the same
 /// time, each in its own direction, may still come apart.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -102,13 +102,13 @@ pub struct Plan {
     /// The steps in order. Steps that take a group apart follow the step that removed the group.
     pub steps: Vec<Step>,
     /// Parts from which all others were removed and which stay in place: the base, or parts that stay together. Empty
-    /// if parts are [left](Self::left).
+    /// if parts are [left](Self::remaining).
     pub base: Vec<usize>,
     /// Parts that remain because they are fixed or because no tested direction moves them.
     pub remaining: Vec<usize>,
     /// Interlocked groups, with the reasons.
     pub interlocked: Vec<Interlocked>,
-    /// For each part, the index of the first part with the same shape (see [`likes`](crate::likes::likes)).
+    /// For each part, the index of the first part with the same shape (see [`likes`](crate::identical::first_identical_parts)).
     pub first_identical: Vec<usize>,
     /// For a plan that removes selected parts: which other parts are removed with them. `None` for a plan of all
     /// parts.

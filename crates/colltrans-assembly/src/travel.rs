@@ -5,7 +5,7 @@
 //!
 //! If overlaps are ignored, overlapping parts are the expensive ones, because all crossings at the start must be
 //! skipped. Therefore facets that stopped the part immediately along another direction are tested first
-//! ([`Witnesses`]). Once a part stops it within `Bodies::noise`, no further overlapping parts are tested. Which of
+//! (`Witnesses`). Once a part stops it within `Bodies::noise`, no further overlapping parts are tested. Which of
 //! them stops it first then depends only on the last digits of the file.
 
 use colltrans::solid::{StartOverlap, Workspace};

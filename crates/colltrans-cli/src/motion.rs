@@ -149,8 +149,10 @@ fn first_of_pairs(
     let mut least_upper: Option<(f64, [usize; 2])> = None;
     for (i, moving) in parts[0].iter().enumerate() {
         for (j, fixed) in parts[1].iter().enumerate() {
-            let cast =
-                MotionCast::new(moving.body.along(&motions[0]), fixed.body.along(&motions[1]))?;
+            let cast = MotionCast::new(
+                moving.body.with_motion(&motions[0]),
+                fixed.body.with_motion(&motions[1]),
+            )?;
             let cast = match arguments.tolerance {
                 Some(depth) => cast.with_tolerance(depth)?,
                 None => cast.with_min_gap(arguments.min_gap)?,

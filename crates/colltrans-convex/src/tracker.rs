@@ -108,7 +108,7 @@ impl<'a> Tracker<'a> {
     /// Returns the tracker with a given focus instead of the solver's ([`Focus::for_solver`]).
     ///
     /// # Errors
-    /// Returns [`QueryError::LastSolution`] if the half-side of a fixed region is negative or not a number.
+    /// Returns [`QueryError::RegionFocus`] if the half-side of a fixed region is negative or not a number.
     pub fn with_focus(self, focus: Focus) -> Result<Self, QueryError> {
         match focus.region {
             Region::Fixed(half_side) if half_side.is_nan() || half_side < 0.0 => {

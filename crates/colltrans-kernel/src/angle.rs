@@ -53,7 +53,7 @@ pub struct SineCosine {
     pub versine: f64,
 }
 
-/// Computes sine, cosine and versine of the angle `high + low` in radians, of magnitude at most [`MOST`].
+/// Computes sine, cosine and versine of the angle `high + low` in radians, of magnitude at most [`MAX_ANGLE`].
 #[inline]
 pub fn sine_and_cosine(high: f64, low: f64) -> SineCosine {
     let k = (high * std::f64::consts::FRAC_2_PI).round();

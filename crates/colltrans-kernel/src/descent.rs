@@ -125,7 +125,7 @@ pub struct QueuedPair<R = ()> {
     pub number: u32,
     /// The reason for the bound, which a proof states.
     pub reason: R,
-    /// Numbers of the two views in [`Seen`], one for each tree.
+    /// Numbers of the two views in [`VisitedNodes`], one for each tree.
     pub views: [u32; 2],
 }
 

@@ -4,8 +4,8 @@
 //! are exact. Invariants:
 //!
 //! - Nothing is allocated on the heap.
-//! - [`LARGE`] limbs suffice for every determinant of coordinates (`docs/theory/exact-arithmetic.md`).
-//! - [`SMALL`] limbs suffice for almost all coordinates. Callers try them first, because copying a number
+//! - [`LARGE_LIMBS`] limbs suffice for every determinant of coordinates (`docs/theory/exact-arithmetic.md`).
+//! - [`SMALL_LIMBS`] limbs suffice for almost all coordinates. Callers try them first, because copying a number
 //!   costs more than multiplying it. A result that may not fit is marked as overflown.
 
 use std::cmp::Ordering;

@@ -1,14 +1,14 @@
 //! Arithmetic, geometry and data structures that all bodies and all searches use.
 //!
 //! - Exact arithmetic: [`range`] (accepted numbers), [`error_free`], [`double`], [`real`], [`integer`],
-//!   [`fine`].
+//!   [`extended`].
 //! - Signs: [`predicates`], [`orientation`], [`volume`].
-//! - Bounds on rounding errors: [`noise`], [`extent`], [`bounded`].
+//! - Bounds on rounding errors: [`noise`], [`height_bounds`], [`bounded`].
 //! - Placement: [`angle`], [`pose`], [`motion`].
 //! - Linear algebra: [`determinant`], [`plane`], [`symmetric`].
 //! - Boxes and trees: [`aabb`], [`split`], [`dynamic_tree`], [`descent`], [`plane_tree`].
-//! - Bodies: [`topology`] (half-edges), [`kept`] (cached derived data), [`id`] (typed numbers).
-//! - Text and tests: [`error`], [`written`], [`work`].
+//! - Bodies: [`topology`] (half-edges), [`derived`] (cached derived data), [`id`] (typed numbers).
+//! - Text and tests: [`error`], [`serialization`], [`visit_counter`].
 
 #![allow(rustdoc::private_intra_doc_links, reason = "hidden modules document their private items")]
 

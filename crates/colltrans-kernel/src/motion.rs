@@ -355,7 +355,7 @@ fn screw_between(from: &Pose, to: &Pose) -> Piece {
 }
 
 /// Computes the angle in the first quadrant whose sine and cosine have the ratio `sine : cosine`, by Newton's
-/// method with the sine and cosine of [`turn`].
+/// method with the sine and cosine of [`sine_and_cosine`](crate::angle::sine_and_cosine).
 #[inline]
 fn arc_tangent(sine: f64, cosine: f64) -> f64 {
     // The initial error is below 0.05.

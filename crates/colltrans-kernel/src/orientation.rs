@@ -7,8 +7,8 @@
 //! Ties are frequent in designed parts. Therefore three methods are tried, each exact if it returns a sign:
 //!
 //! 1. numbers of twice the usual precision with an error bound ([`Double`]; exact if the bound is 0),
-//! 2. integers of [`SMALL`] capacity,
-//! 3. integers of [`LARGE`] capacity, which always suffices (`docs/theory/exact-arithmetic.md`).
+//! 2. integers of [`SMALL_LIMBS`] capacity,
+//! 3. integers of [`LARGE_LIMBS`] capacity, which always suffices (`docs/theory/exact-arithmetic.md`).
 
 #![expect(clippy::inline_always, reason = "inlining keeps the sums in registers")]
 
@@ -91,7 +91,7 @@ impl PointTerms<'_> {
 /// axis `u` and `eps^2` along `v` (simulation of simplicity). The sign is `Equal` only if `a` and `b` have the
 /// same shadow along `d`.
 ///
-/// `base` computes the [`shadow`] of `a` or `b`.
+/// `base` computes the [`shadow_of_point`] of `a` or `b`.
 #[inline]
 pub fn perturbed_orientation(
     a: &PointTerms,

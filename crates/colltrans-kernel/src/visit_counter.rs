@@ -1,6 +1,6 @@
 //! Counter of visited points, faces and pairs, for tests of asymptotic work.
 //!
-//! Loops whose length depends on the input call [`count`]. It counts only with debug assertions and does
+//! Loops whose length depends on the input call [`count_visits`]. It counts only with debug assertions and does
 //! nothing in optimised builds. The tests use no clock, so that the load of the machine does not affect them.
 
 /// Adds a number of visited points, faces or pairs to the counter.

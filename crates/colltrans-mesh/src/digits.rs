@@ -23,7 +23,7 @@
 //!
 //! The format alone may be finer than the numbers: a program that computes in single precision prints them with
 //! nine digits, eight decimals, or all digits of a double. So each number is compared with the nearest one in single
-//! precision ([`Decimal::single_bits`]). If nearly all are such numbers rounded to the printed place, and chance
+//! precision (`Decimal::single_bits`). If nearly all are such numbers rounded to the printed place, and chance
 //! explains this with a probability below `2^-SURE` only, the file is in single precision.
 
 use std::collections::HashMap;

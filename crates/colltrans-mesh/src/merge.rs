@@ -8,7 +8,7 @@
 //! - Invariant: in their order, each vertex is merged into the nearest representative within `tol`, or becomes
 //!   a representative. Hence no vertex moves by more than `tol`, representatives are more than `tol` apart, and
 //!   a chain of near vertices is cut into pieces. Vertices with several representatives within `tol` are
-//!   counted ([`Merged::ambiguous`]).
+//!   counted (`Merged::ambiguous`).
 //! - Default tolerance, with the largest coordinate `m` in magnitude: duplicates in single precision differ by
 //!   at most one unit in the last place, `2^-23 m`, per coordinate, hence by `sqrt(3)` times that, at most
 //!   `2^-22 m`. Results in double precision have the errors of a few dozen roundings of `2^-53 m`, for which

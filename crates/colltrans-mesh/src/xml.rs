@@ -29,7 +29,7 @@ impl Element {
     /// Parses a document and returns its root element.
     ///
     /// # Errors
-    /// [`Fault`] with place and reason.
+    /// [`XmlError`] with place and reason.
     pub fn parse(text: &str) -> Result<Self, XmlError> {
         let mut reader = quick_xml::Reader::from_str(text);
         let mut lines = Lines::new(text);

@@ -102,11 +102,11 @@ impl<P> MotionClearance<P> {
 impl MotionCast<'_> {
     /// Computes how far the body can move along its motion.
     ///
-    /// The query uses the [tolerance](Self::tolerating), or a default: a multiple of the error bound of computed
+    /// The query uses the [tolerance](Self::with_tolerance), or a default: a multiple of the error bound of computed
     /// points. Bodies in contact may therefore slide, rotate and separate, and are stopped where they would be pushed
-    /// together. The distance may fall below a [minimum gap](Self::keeping) by the tolerance.
+    /// together. The distance may fall below a [minimum gap](Self::with_min_gap) by the tolerance.
     ///
-    /// The proof in the answer belongs to the query [`Self::cleared`]. For [solids](MotionCast::between_any),
+    /// The proof in the answer belongs to the query [`Self::with_clearance_tolerance`]. For [solids](MotionCast::between_any),
     /// [`MotionCast::with_start_overlap`] selects how an overlap at the start is treated.
     ///
     /// # Errors

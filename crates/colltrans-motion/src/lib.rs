@@ -117,7 +117,7 @@ pub struct MotionCast<'a, B = ConvexPolyhedron> {
 }
 
 impl<'a, B> MotionCast<'a, B> {
-    /// Builds the cast of two bodies [along](ConvexPolyhedron::along) a motion or [at](ConvexPolyhedron::at) a pose,
+    /// Builds the cast of two bodies [with a motion](ConvexPolyhedron::with_motion) a motion or [at](ConvexPolyhedron::at) a pose,
     /// both convex or both solids. For bodies of different kinds, see [`Self::between`](MotionCast::between_any).
     ///
     /// # Errors

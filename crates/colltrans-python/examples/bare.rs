@@ -37,7 +37,7 @@ fn casts(
         if let Outcome::Contact(contact) = cast.first_contact()? {
             let proof = contact.certificate;
             answer[..3].copy_from_slice(&contact.normal.to_array());
-            answer[3..6].copy_from_slice(&contact.points(&cast).on_fixed.to_array());
+            answer[3..6].copy_from_slice(&contact.witness_points(&cast).on_fixed.to_array());
             answer[6..].copy_from_slice(&[
                 contact.translation,
                 proof.lower,

@@ -14,20 +14,22 @@ use std::time::Duration;
 
 use colltrans::glam::{DAffine3, DVec3};
 use colltrans::solid::StartOverlap;
-use colltrans_assembly::blocking::Blocking;
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::blocking::BlockingGraph;
+use colltrans_assembly::candidates::{CandidateOptions, find_candidates};
+use colltrans_assembly::liaisons::find_liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
-use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Leg, Passed, Plan, PlanOptions, Step, Times, Turn, Wanted};
+use colltrans_assembly::matrix::ContactMatrix;
+use colltrans_assembly::plan::{
+    HandlingTimes, Leg, Plan, PlanOptions, SelectedRemoval, Step, ToleratedContact, Turn,
+};
 use colltrans_assembly::report::html;
-use colltrans_assembly::roles::{PairFit, Role, Tolerated};
-use colltrans_assembly::rooms::{PartRoom, rooms};
-use colltrans_assembly::sphere::unit;
+use colltrans_assembly::roles::{PairFit, PairTolerance, Role};
+use colltrans_assembly::sphere::normalized_direction;
 use colltrans_assembly::start::Start;
-use colltrans_assembly::suggest::{Suggestion, loose_threads, suggestions};
+use colltrans_assembly::suggest::{Suggestion, suggest_fits, suggest_loose_threads};
+use colltrans_assembly::travel::{PartTravel, travels_of_parts};
 use colltrans_assembly::{
-    AssemblyError, Bodies, Findings, Fit, Ignored, Part, Piece, Question, Watch,
+    Analysis, AnalysisRequest, AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch,
 };
 use colltrans_assembly_io::read::{self, Geometry, ReadOptions};
 use colltrans_mesh::Mesh;
@@ -81,7 +83,7 @@ type PlanRows = (
     Vec<f64>,
     Planned,
 );
-/// Wanted parts, other removed parts, whether this set is proven to be the smallest, and whether the parts
+/// SelectedRemoval parts, other removed parts, whether this set is proven to be the smallest, and whether the parts
 /// come out.
 type WantedRow = (Vec<usize>, Vec<usize>, bool, bool);
 /// Parts, number of tested directions, number of cells in which it is proven that no group can be removed,
@@ -118,9 +120,9 @@ pub(crate) struct Assembly(Arc<colltrans_assembly::Assembly>);
 pub(crate) struct Planned {
     assembly: Arc<colltrans_assembly::Assembly>,
     choices: Choices,
-    question: Question,
+    question: AnalysisRequest,
     plan: Plan,
-    times: Times,
+    times: HandlingTimes,
 }
 
 #[pymethods]
@@ -130,9 +132,12 @@ impl Planned {
         let Self { assembly, choices, question, plan, times } = self;
         run_interruptible(py, |watch| {
             let bodies = Bodies::new(assembly, choices.fit(assembly))?;
-            let found =
-                Findings { plan: plan.clone(), times: *times, ..question.look(&bodies, watch)? };
-            Ok(html::page(&found, title))
+            let found = Analysis {
+                plan: plan.clone(),
+                times: *times,
+                ..question.analyse_without_plan(&bodies, watch)?
+            };
+            Ok(html::report_page(&found, title))
         })
     }
 }
@@ -198,40 +203,40 @@ fn thread_error<T>(answer: Result<T, rayon::ThreadPoolBuildError>) -> PyResult<T
 
 /// Normalises directions to unit vectors.
 fn unit_vectors(directions: &[DVec3]) -> Result<Vec<DVec3>, AssemblyError> {
-    directions.iter().map(|d| unit(*d)).collect()
+    directions.iter().map(|d| normalized_direction(*d)).collect()
 }
 
 /// Chooses the directions to test: the given ones, or a search if none are given.
-fn choose_directions(given: &[DVec3]) -> Result<Choice, AssemblyError> {
-    Ok(Choice::default().with_given(unit_vectors(given)?).with_search(given.is_empty()))
+fn choose_directions(given: &[DVec3]) -> Result<CandidateOptions, AssemblyError> {
+    Ok(CandidateOptions::default().with_given(unit_vectors(given)?).with_search(given.is_empty()))
 }
 
-fn room_row<'a>(rooms: impl Iterator<Item = &'a PartRoom> + Clone) -> RoomRow {
-    let by = |room: &PartRoom| room.by().map_or(-1, |by| by as i64);
-    (rooms.clone().map(PartRoom::distance).collect(), rooms.map(by).collect())
+fn room_row<'a>(rooms: impl Iterator<Item = &'a PartTravel> + Clone) -> RoomRow {
+    let by = |room: &PartTravel| room.blocker().map_or(-1, |by| by as i64);
+    (rooms.clone().map(PartTravel::safe_distance).collect(), rooms.map(by).collect())
 }
 
 fn turn_row(turn: &Turn) -> TurnRow {
     let tolerance = turn.proof.as_ref().ok().map(|proof| proof.tolerance);
-    let [point, aside] = [turn.point, turn.aside].map(|vector| vector.to_array());
-    (point, turn.turns, turn.phase, aside, tolerance, turn.words())
+    let [point, aside] = [turn.point, turn.offset].map(|vector| vector.to_array());
+    (point, turn.turns, turn.initial_turns, aside, tolerance, turn.describe())
 }
 
-fn passed_row(passed: &Passed) -> PassedRow {
-    let Passed { parts, role, tolerated } = *passed;
+fn passed_row(passed: &ToleratedContact) -> PassedRow {
+    let ToleratedContact { parts, role, tolerated } = *passed;
     let tolerance = match tolerated {
-        Tolerated::Within(length) | Tolerated::Bent(length) => Some(length),
+        PairTolerance::Within(length) | PairTolerance::Snap(length) => Some(length),
         _ => None,
     };
-    (parts, role.map(Role::name), tolerance, tolerated.words(role))
+    (parts, role.map(Role::name), tolerance, tolerated.describe(role))
 }
 
 /// Reads a table of handling times, in seconds.
-fn read_times(given: &BTreeMap<String, f64>) -> PyResult<Times> {
+fn read_times(given: &BTreeMap<String, f64>) -> PyResult<HandlingTimes> {
     let refused = |reason: String| error("InputError", format!("times: {reason}"));
     let value = serde_json::to_value(given).map_err(|e| refused(e.to_string()))?;
-    let times: Times = serde_json::from_value(value).map_err(|e| refused(e.to_string()))?;
-    match times.wrong() {
+    let times: HandlingTimes = serde_json::from_value(value).map_err(|e| refused(e.to_string()))?;
+    match times.first_invalid() {
         Some((name, seconds)) => {
             Err(refused(format!("{name}: invalid time {seconds}; expected a number of seconds")))
         }
@@ -243,7 +248,7 @@ fn read_times(given: &BTreeMap<String, f64>) -> PyResult<Times> {
 fn role_from_name(name: Option<&str>) -> PyResult<Option<Role>> {
     let named = |name: &str| {
         let refused = || error("InputError", format!("unknown role {name}"));
-        Role::named(name).ok_or_else(refused)
+        Role::from_name(name).ok_or_else(refused)
     };
     name.map(named).transpose()
 }
@@ -357,18 +362,18 @@ impl Assembly {
         let stuck: Vec<Vec<usize>> =
             stuck.into_iter().map(|names| self.group(names)).collect::<PyResult<_>>()?;
         let found = self.ask(py, Choices::new(tolerance, false), |bodies, watch| {
-            let mut all = suggestions(bodies, &Start::new(bodies, watch)?);
+            let mut all = suggest_fits(bodies, &Start::new(bodies, watch)?);
             for parts in &stuck {
-                all.extend(loose_threads(bodies, parts)?);
+                all.extend(suggest_loose_threads(bodies, parts)?);
             }
             Ok(all)
         })?;
-        let row = |s: Suggestion| (s.parts, s.fit.role.map(Role::name), s.fit.tolerance, s.why);
+        let row = |s: Suggestion| (s.parts, s.fit.role.map(Role::name), s.fit.tolerance, s.reason);
         Ok(found.into_iter().map(row).collect())
     }
 
     fn group(&self, names: Vec<String>) -> PyResult<Vec<usize>> {
-        self.0.group(&names).or_raise()
+        self.0.parts_named(&names).or_raise()
     }
 
     /// Returns the vertices and triangles of all parts, in the world.
@@ -382,7 +387,7 @@ impl Assembly {
     }
 
     fn index(&self, name: &str) -> PyResult<usize> {
-        self.0.index(name).or_raise()
+        self.0.part_index(name).or_raise()
     }
 
     fn rooms(
@@ -395,7 +400,8 @@ impl Assembly {
         let directions = points(directions, "directions")?;
         let choices = Choices::new(tolerance, ignore_overlaps);
         self.ask(py, choices, |bodies, watch| {
-            let rooms = rooms(bodies, &unit_vectors(&directions)?, choices.start, watch)?;
+            let rooms =
+                travels_of_parts(bodies, &unit_vectors(&directions)?, choices.start, watch)?;
             Ok(rooms.iter().map(|row| room_row(row.iter())).collect())
         })
     }
@@ -411,10 +417,16 @@ impl Assembly {
         let choices = Choices::new(tolerance, ignore_overlaps);
         self.ask(py, choices, |bodies, watch| {
             let all = vec![true; bodies.len()];
-            let matrix = Matrix::new(bodies, &[unit(direction)?], &all, choices.start, watch)?;
-            let graph = Blocking::new(&matrix, 0, &all);
-            let blockers = (0..bodies.len()).map(|part| graph.blockers(part)).collect();
-            Ok([blockers, graph.removable()])
+            let matrix = ContactMatrix::new(
+                bodies,
+                &[normalized_direction(direction)?],
+                &all,
+                choices.start,
+                watch,
+            )?;
+            let graph = BlockingGraph::new(&matrix, 0, &all);
+            let blockers = (0..bodies.len()).map(|part| graph.direct_blockers(part)).collect();
+            Ok([blockers, graph.removable_groups()])
         })
     }
 
@@ -439,29 +451,29 @@ impl Assembly {
         let options = PlanOptions::default()
             .with_start(choices.start)
             .with_samples(samples)
-            .with_legs(legs)
+            .with_max_moves(legs)
             .with_proofs(proofs);
-        let question = Question::default()
+        let question = AnalysisRequest::default()
             .with_choice(choose_directions(&given).or_raise()?)
             .with_options(options)
-            .with_wanted(wanted);
+            .with_selected(wanted);
         let question = match gravity {
             Some(gravity) => question.with_gravity(gravity),
             None => question,
         };
         let (plan, because, stages) = self.ask(py, choices, |bodies, watch| {
-            let plan = question.ask(bodies, watch)?.plan;
-            let because = plan.stuck.iter().map(|stuck| stuck.because(bodies));
+            let plan = question.analyse(bodies, watch)?.plan;
+            let because = plan.interlocked.iter().map(|stuck| stuck.explain(bodies));
             let because: Vec<String> = because.collect();
             let stage = |stage: Range<usize>| {
-                let takes = plan.takes(bodies.assembly(), &stage);
-                (takes, [stage.start, stage.end], plan.travel(&stage))
+                let takes = plan.describe_stage(bodies.assembly(), &stage);
+                (takes, [stage.start, stage.end], plan.stage_travel(&stage))
             };
             let stages: Vec<StageRow> = plan.stages().into_iter().map(stage).collect();
             Ok((plan, because, stages))
         })?;
-        let (rounds, reverse) = (plan.rounds(), plan.assembly());
-        let seconds = times.of(&plan);
+        let (rounds, reverse) = (plan.parallel_rounds(), plan.assembly_sequence());
+        let seconds = times.step_seconds(&plan);
         let planned =
             Planned { assembly: self.0.clone(), choices, question, plan: plan.clone(), times };
         let steps = plan.steps.into_iter();
@@ -471,27 +483,51 @@ impl Assembly {
                 let turn = leg.turn.as_ref().map(turn_row);
                 (leg.parts, leg.direction.to_array(), leg.travel, turn)
             };
-            let legs = [s.path, s.back].map(|all| all.into_iter().map(leg).collect());
+            let legs = [s.path, s.return_legs].map(|all| all.into_iter().map(leg).collect());
             let (travel, bounds) = (travel.value, travel.bounds());
-            let passed = s.passed.iter().map(passed_row).collect();
-            let named = [s.falls, s.off_balance, s.surfaces];
-            (s.parts, direction, travel, bounds, legs, s.within, s.after, s.ignored, passed, named)
+            let passed = s.tolerated.iter().map(passed_row).collect();
+            let named = [s.falling, s.off_balance, s.surfaces];
+            (
+                s.parts,
+                direction,
+                travel,
+                bounds,
+                legs,
+                s.group_step,
+                s.predecessors,
+                s.ignored,
+                passed,
+                named,
+            )
         };
         let steps = steps.map(row).collect();
-        let stuck = plan.stuck.into_iter().zip(because).map(|(stuck, because)| {
+        let stuck = plan.interlocked.into_iter().zip(because).map(|(stuck, because)| {
             let sets = |by: Vec<(Vec<usize>, DVec3)>| by.into_iter().map(|(set, _)| set).collect();
             (
                 stuck.parts,
-                stuck.directions,
-                stuck.proven,
+                stuck.tested_directions,
+                stuck.proof_cells,
                 because,
-                stuck.holds.into_iter().map(|h| (h.part, sets(h.by))).collect(),
+                stuck.blocking_sets.into_iter().map(|h| (h.part, sets(h.sets))).collect(),
             )
         });
-        let wanted = |Wanted { parts, others, least, out, .. }| (parts, others, least, out);
-        let goes = plan.wanted.map(wanted);
+        let wanted = |SelectedRemoval { parts, others, is_minimal, is_complete, .. }| {
+            (parts, others, is_minimal, is_complete)
+        };
+        let goes = plan.selection.map(wanted);
         let stuck = stuck.collect();
-        Ok((steps, stages, plan.last, plan.left, stuck, goes, rounds, reverse, seconds, planned))
+        Ok((
+            steps,
+            stages,
+            plan.base,
+            plan.remaining,
+            stuck,
+            goes,
+            rounds,
+            reverse,
+            seconds,
+            planned,
+        ))
     }
 
     #[expect(clippy::type_complexity, reason = "the tuple has the four parts of a map")]
@@ -506,8 +542,9 @@ impl Assembly {
     ) -> PyResult<(Vec<[f64; 3]>, RoomRow, Vec<(f64, [f64; 3])>, Vec<[f64; 3]>)> {
         let choices = Choices::new(tolerance, ignore_overlaps);
         let map = self.ask(py, choices, |bodies, watch| {
-            let touching = liaisons(bodies, watch)?;
-            let directions = candidates(bodies, &touching, &Choice::default())?.directions();
+            let touching = find_liaisons(bodies, watch)?;
+            let directions =
+                find_candidates(bodies, &touching, &CandidateOptions::default())?.directions();
             let options = MapOptions::default()
                 .with_samples(samples)
                 .with_border(border)
@@ -516,7 +553,7 @@ impl Assembly {
         })?;
         Ok((
             map.sphere.directions.iter().map(DVec3::to_array).collect(),
-            room_row(map.rooms.iter()),
+            room_row(map.travels.iter()),
             map.regions.iter().map(|r| (r.solid_angle, r.center.to_array())).collect(),
             map.isolated.iter().map(DVec3::to_array).collect(),
         ))

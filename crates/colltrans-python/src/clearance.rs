@@ -2,7 +2,7 @@
 
 use colltrans::glam::DVec3;
 use colltrans::record::{ClearanceRecord, Record};
-use colltrans::{CentralCast, Clearance, Outcome, OverlapAhead, ProofFile, WhyFree};
+use colltrans::{CentralCast, Clearance, FreeReason, Outcome, OverlapAhead, ProofFile};
 use pyo3::prelude::*;
 
 use crate::answer::{Answer, answer, object};
@@ -44,7 +44,7 @@ pub(crate) struct Slides {
     query: Py<Cast>,
 }
 
-answer!(Slides("grazing") of Clearance, Cast, |it| Clearance::Free(WhyFree::Slides(it.grazing)));
+answer!(Slides("grazing") of Clearance, Cast, |it| Clearance::Free(FreeReason::Slides(it.grazing)));
 
 getters!(Slides, |it| {
     /// float: Infinite.
@@ -67,7 +67,7 @@ pub(crate) struct Behind {
     query: Py<Cast>,
 }
 
-answer!(Behind("contact") of Clearance, Cast, |it| Clearance::Free(WhyFree::Behind(it.contact)));
+answer!(Behind("contact") of Clearance, Cast, |it| Clearance::Free(FreeReason::Behind(it.contact)));
 
 getters!(Behind, |it| {
     /// float: Infinite.
@@ -182,15 +182,17 @@ impl Answer for Clearance {
         let (py, query) = (asked.py(), asked.clone().unbind());
         match self {
             Self::Blocked { distance, contact } => object(py, Blocked { distance, contact, query }),
-            Self::Free(WhyFree::Slides(grazing)) => object(py, Slides { grazing, query }),
-            Self::Free(WhyFree::Behind(contact)) => object(py, Behind { contact, query }),
-            Self::Free(WhyFree::Separated(of)) => colltrans::Outcome::Separated(of).object(asked),
+            Self::Free(FreeReason::Slides(grazing)) => object(py, Slides { grazing, query }),
+            Self::Free(FreeReason::Behind(contact)) => object(py, Behind { contact, query }),
+            Self::Free(FreeReason::Separated(of)) => {
+                colltrans::Outcome::Separated(of).object(asked)
+            }
             Self::Overlapping(ends) => object(py, Overlapping { ends, query }),
         }
     }
 
     fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
-        query.get().with(|cast| ClearanceRecord::of(self, cast).into())
+        query.get().with(|cast| ClearanceRecord::from_clearance(self, cast).into())
     }
 
     fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {

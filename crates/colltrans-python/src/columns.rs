@@ -6,7 +6,8 @@ use colltrans::record::{
     Ending, FeatureRecord, FeaturesRecord, MotionRecord, Record, StartOverlapRecord,
 };
 use colltrans::{
-    Cast, Clearance, Contact, ContactRange, Features, InputVertex, Outcome, OverlapAhead, WhyFree,
+    Cast, Clearance, Contact, ContactRange, Features, FreeReason, InputVertex, Outcome,
+    OverlapAhead,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -233,7 +234,7 @@ impl Row {
     fn from_contact(outcome: u8, first: &Contact, cast: &Cast<'_>, featured: bool) -> Self {
         let mut row = Self { outcome, ..Self::NONE }
             .with_vector(NORMAL, coordinates(first.normal))
-            .with_vector(POINT, coordinates(first.points(cast).on_fixed));
+            .with_vector(POINT, coordinates(first.witness_points(cast).on_fixed));
         if featured {
             let Features { moving, fixed } = first.features(cast);
             row.features =
@@ -256,17 +257,19 @@ impl Row {
         let of = |outcome: u8, first: &Contact| Self::from_contact(outcome, first, cast, featured);
         let row = match answer {
             Clearance::Blocked { contact, .. } => of(0, contact),
-            Clearance::Free(WhyFree::Slides(grazing)) => {
+            Clearance::Free(FreeReason::Slides(grazing)) => {
                 of(1, &grazing.contact).with_number(OVERLAP, grazing.overlap)
             }
             // The last contact is the first one of the reversed cast, so its bounds do not apply to this
             // direction.
-            Clearance::Free(WhyFree::Behind(last)) => Self {
+            Clearance::Free(FreeReason::Behind(last)) => Self {
                 numbers: Self::NONE.with_number(ROUNDING, last.certificate.rounding).numbers,
                 ..Self::from_contact(2, last, &cast.reversed(), featured)
             }
             .with_exit(last),
-            Clearance::Free(WhyFree::Separated(separated)) => Self::from_separation(3, separated),
+            Clearance::Free(FreeReason::Separated(separated)) => {
+                Self::from_separation(3, separated)
+            }
             Clearance::Overlapping(OverlapAhead { first, last }) => of(4, first)
                 .with_exit(last)
                 .with_number(BACK, -first.certificate.lower)

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use colltrans::removal::directions::{FreeError, FreeOptions, FreeProof, Verdict};
 use colltrans::glam::DVec3;
 use colltrans::record::FreeRecord;
+use colltrans::removal::directions::{FreeError, FreeOptions, FreeProof, Verdict};
 use colltrans::solid::SolidCast as _;
 use colltrans::solid::StartOverlap;
 use colltrans::{Placed, ProofFile, QueryError};
-use colltrans_mesh::body::between;
+use colltrans_mesh::body::cast_between;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
@@ -60,11 +60,18 @@ impl FreeDirections {
     fn each<T>(
         &self,
         directions: &Bound<'_, PyAny>,
-        ask: impl Fn(&colltrans::removal::directions::FreeDirections<'_>, DVec3) -> Result<T, QueryError>,
+        ask: impl Fn(
+            &colltrans::removal::directions::FreeDirections<'_>,
+            DVec3,
+        ) -> Result<T, QueryError>,
     ) -> PyResult<Vec<T>> {
         let directions = points(directions, "directions")?;
         let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
-        let free = colltrans::removal::directions::FreeDirections::believing(&moving, &fixed, &self.proof);
+        let free = colltrans::removal::directions::FreeDirections::from_trusted_proof(
+            &moving,
+            &fixed,
+            &self.proof,
+        );
         let free = free.map_err(free_error)?;
         directions.into_iter().map(|d| ask(&free, d).or_raise()).collect()
     }
@@ -76,7 +83,7 @@ impl Question {
         let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
         let precisions = [0, 1].map(|k| self.bodies[k].precision());
         let FreeOptions { tolerance, start_overlap, .. } = self.options;
-        let cast = between(moving, fixed, DVec3::Z, precisions, tolerance, start_overlap);
+        let cast = cast_between(moving, fixed, DVec3::Z, precisions, tolerance, start_overlap);
         self.options = self.options.with_tolerance(cast.or_raise()?.tolerance());
         Ok(self)
     }
@@ -84,9 +91,10 @@ impl Question {
     fn answer(self) -> PyResult<FreeDirections> {
         let asked = self.settled()?;
         let [moving, fixed] = place_bodies(&asked.bodies, &asked.poses)?;
-        let free = colltrans::removal::directions::FreeDirections::of(&moving, &fixed, asked.options);
+        let free =
+            colltrans::removal::directions::FreeDirections::compute(&moving, &fixed, asked.options);
         let free = free.map_err(free_error)?;
-        let (proof, record) = (free.proof(), FreeRecord::of(&free, |_| [None, None]));
+        let (proof, record) = (free.proof(), FreeRecord::from_directions(&free, |_| [None, None]));
         let Self { bodies, poses, options } = asked;
         Ok(FreeDirections { bodies, poses, options, proof, record })
     }
@@ -136,10 +144,12 @@ impl FreeDirections {
         py.detach(|| {
             let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
             let proof = &self.proof;
-            let free = colltrans::removal::directions::FreeDirections::believing(&moving, &fixed, proof);
+            let free = colltrans::removal::directions::FreeDirections::from_trusted_proof(
+                &moving, &fixed, proof,
+            );
             let free = free.map_err(free_error)?;
             let word = |d: DVec3| {
-                Ok(match free.says(d).or_raise()? {
+                Ok(match free.classify(d).or_raise()? {
                     Verdict::Free => "free",
                     Verdict::Blocked(_) => "blocked",
                     Verdict::Undecided => "undecided",
@@ -165,7 +175,7 @@ impl FreeDirections {
         let Some(point) = self.record.points.get(number) else {
             return Err(PyIndexError::new_err(format!("there is no point {number}")));
         };
-        self.each(directions, |free, d| free.is_at(point, d))
+        self.each(directions, |free, d| free.is_at_point(point, d))
     }
 
     /// Checks whether directions are on an arc or at one of its ends, exactly.
@@ -184,7 +194,7 @@ impl FreeDirections {
         let Some(arc) = self.record.arcs.get(number) else {
             return Err(PyIndexError::new_err(format!("there is no arc {number}")));
         };
-        self.each(directions, |free, d| free.is_on(arc, d))
+        self.each(directions, |free, d| free.is_on_arc(arc, d))
     }
 
     /// Checks the proof for every cell of the sphere, without a search.
@@ -196,7 +206,11 @@ impl FreeDirections {
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| {
             let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
-            let checked = colltrans::removal::directions::FreeDirections::from_proof(&moving, &fixed, &self.proof);
+            let checked = colltrans::removal::directions::FreeDirections::from_proof(
+                &moving,
+                &fixed,
+                &self.proof,
+            );
             checked.map(|_| ()).map_err(free_error)
         })
     }
@@ -221,7 +235,11 @@ impl FreeDirections {
     fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
         py.detach(|| {
             let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
-            let free = colltrans::removal::directions::FreeDirections::believing(&moving, &fixed, &self.proof);
+            let free = colltrans::removal::directions::FreeDirections::from_trusted_proof(
+                &moving,
+                &fixed,
+                &self.proof,
+            );
             let free = free.map_err(free_error)?.with_options(self.options);
             let pieces = [self.bodies[0].pieces().or_raise()?, self.bodies[1].pieces().or_raise()?];
             let file = ProofFile::of_free_directions(&free, [&pieces[0], &pieces[1]]);

@@ -258,7 +258,9 @@ impl Answer for DistanceOf {
 
     fn record(&self, query: &Bound<'_, Pair>) -> PyResult<Record> {
         match (self, query.get().asked()?) {
-            (Self::Convex(found), Of::Convex(pair)) => Ok(DistanceRecord::of(found, &pair).into()),
+            (Self::Convex(found), Of::Convex(pair)) => {
+                Ok(DistanceRecord::from_distance(found, &pair).into())
+            }
             (Self::Solids(found), Of::Solids(pair)) => {
                 Ok(DistanceRecord::of_solids(found, &pair).into())
             }

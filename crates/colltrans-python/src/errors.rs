@@ -13,7 +13,7 @@ use colltrans::{
 };
 use colltrans_assembly::AssemblyError;
 use colltrans_assembly_io::ReadError;
-use colltrans_mesh::body::{LoadError, Refused, Take};
+use colltrans_mesh::body::{BodyError, BodyKind, LoadError};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -63,7 +63,7 @@ macro_rules! raised {
 }
 
 raised! {
-    BuildError: BuildError, SolidError, Refused;
+    BuildError: BuildError, SolidError, BodyError;
     PoseError: PoseError;
     CertificateError: CertificateError, ProofError;
     CaseError: CaseError, ProofFileError;
@@ -117,12 +117,12 @@ fn is_of_assembly(extension: &OsStr) -> bool {
 }
 
 /// Returns the calls that would take a file whose mesh was refused.
-fn calls_instead(refused: &Refused) -> Option<String> {
-    let calls = refused.instead().iter().map(|take| match take {
-        Take::Convex => "read(path) reads a convex body",
-        Take::Solid => "Solid.read(path) reads it as it is",
-        Take::Hull => "read(path, hull=True) reads its convex hull",
-        Take::Open => "Solid.read(path, open=True) reads an open surface",
+fn calls_instead(refused: &BodyError) -> Option<String> {
+    let calls = refused.alternatives().iter().map(|take| match take {
+        BodyKind::Convex => "read(path) reads a convex body",
+        BodyKind::Solid => "Solid.read(path) reads it as it is",
+        BodyKind::Hull => "read(path, hull=True) reads its convex hull",
+        BodyKind::Open => "Solid.read(path, open=True) reads an open surface",
     });
     Some(calls.collect::<Vec<_>>().join(", ")).filter(|calls| !calls.is_empty())
 }

@@ -71,11 +71,11 @@ impl Motions<'_> {
         let (pose, of) = (start.pose(row)?, table.row(row));
         let three = |k: usize| DVec3::from_slice(&of[3 * k..]);
         match of {
-            [_, _, _] => Motion::slide(pose, three(0)),
+            [_, _, _] => Motion::translation(pose, three(0)),
             [.., angle, rise] if of.len() == 8 => {
                 Motion::screw(pose, three(0), three(1), *angle, *rise)
             }
-            _ => Motion::thrown(pose, three(0), three(1), three(2)),
+            _ => Motion::free_flight(pose, three(0), three(1), three(2)),
         }
         .map_err(|what| format!("{}: {what}", table.name))
     }
@@ -116,8 +116,9 @@ impl<'a> Work<'a> {
             return self.answer_placed([moving, fixed], [at, to], row);
         };
         let (moving, fixed) = (moving.convex()?, fixed.convex()?);
-        let options =
-            options.with_graze_tolerance(graze_tolerances.row(row)[0]).with_keep(keeps.row(row)[0]);
+        let options = options
+            .with_graze_tolerance(graze_tolerances.row(row)[0])
+            .with_min_gap(keeps.row(row)[0]);
         Cast::new(moving.at(at), fixed.at(to), directions.vector(row))
             .and_then(|cast| cast.with_options(options))
             .and_then(|cast| self.question.ask(&cast, by, self.featured))
@@ -140,13 +141,13 @@ impl<'a> Work<'a> {
         };
         let record = if let [AnyBody::Convex(p), AnyBody::Convex(q)] = bodies {
             Pair::new(p.at(poses[0]), q.at(poses[1]))
-                .and_then(|pair| Ok(question.ask(&pair)?.record(&pair)))
+                .and_then(|pair| Ok(question.answer(&pair)?.record(&pair)))
         } else {
             let placed = |k: usize| -> Result<Placed<'_, _>, String> {
                 Ok(Placed { body: bodies[k].solid()?, pose: poses[k] })
             };
             Pair::new(placed(0)?, placed(1)?)
-                .and_then(|pair| question.ask_solids(&pair)?.record(&pair))
+                .and_then(|pair| question.answer_solids(&pair)?.record(&pair))
         };
         let record = record.map_err(|what| what.to_string())?;
         Ok(Row::from_record(self.question, &record))
@@ -170,7 +171,7 @@ fn answer_moving(
             Ok(if clears {
                 MotionRecord::of_clearance(&cast.clearance()?, &cast)
             } else {
-                MotionRecord::of(&cast.first_contact()?, &cast)
+                MotionRecord::from_outcome(&cast.first_contact()?, &cast)
             })
         })
     } else {

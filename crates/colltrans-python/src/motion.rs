@@ -45,7 +45,7 @@ pickled!(Motion);
 
 getters!(Motion, |it| {
     /// Pose: The pose of the body at time 0.
-    start: Pose = Pose(it.0.start());
+    start: Pose = Pose(it.0.start_pose());
 });
 
 #[pymethods]
@@ -54,7 +54,7 @@ impl Motion {
     #[staticmethod]
     #[pyo3(signature = (pose=None))]
     fn still(pose: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
-        Ok(Self(motion::Motion::still(crate::pose::pose(pose, "pose")?)))
+        Ok(Self(motion::Motion::at_rest(crate::pose::pose(pose, "pose")?)))
     }
 
     /// Builds a translation from a pose by a vector, in world units.
@@ -66,7 +66,7 @@ impl Motion {
     #[staticmethod]
     #[pyo3(signature = (by, *, pose=None))]
     fn slide(by: &Bound<'_, PyAny>, pose: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
-        motion::Motion::slide(crate::pose::pose(pose, "pose")?, vector(by, "by")?)
+        motion::Motion::translation(crate::pose::pose(pose, "pose")?, vector(by, "by")?)
             .or_raise()
             .map(Self)
     }
@@ -137,7 +137,7 @@ impl Motion {
     ) -> PyResult<Self> {
         let (center, velocity) = (vector(center, "center")?, vector(velocity, "velocity")?);
         let spin = vector(angular_velocity, "angular_velocity")?;
-        motion::Motion::thrown(crate::pose::pose(pose, "pose")?, center, velocity, spin)
+        motion::Motion::free_flight(crate::pose::pose(pose, "pose")?, center, velocity, spin)
             .or_raise()
             .map(Self)
     }
@@ -145,7 +145,7 @@ impl Motion {
     /// Builds the screw from one pose to another with the smaller angle. It ends there up to rounding.
     #[staticmethod]
     fn between(start: &Bound<'_, PyAny>, end: &Bound<'_, PyAny>) -> PyResult<Self> {
-        motion::Motion::between(pose(Some(start), "start")?, pose(Some(end), "end")?)
+        motion::Motion::between_poses(pose(Some(start), "start")?, pose(Some(end), "end")?)
             .or_raise()
             .map(Self)
     }
@@ -160,7 +160,7 @@ impl Motion {
     fn through(poses: &Bound<'_, PyAny>) -> PyResult<Self> {
         let each = poses.try_iter()?.map(|item| pose(Some(&item?), "poses"));
         let poses = each.collect::<PyResult<Vec<_>>>()?;
-        motion::Motion::through(&poses).or_raise().map(Self)
+        motion::Motion::through_poses(&poses).or_raise().map(Self)
     }
 
     /// Builds a motion from the numbers that define it.
@@ -181,24 +181,24 @@ impl Motion {
         let angle = angle_in_radians("about(arm, axis, way", angle, degrees, radians)?;
         let start = crate::pose::pose(pose, "pose")?;
         let (arm, axis, way) = (vector(arm, "arm")?, vector(axis, "axis")?, vector(way, "way")?);
-        motion::Motion::about(start, arm, axis, angle, way).or_raise().map(Self)
+        motion::Motion::from_arm_and_axis(start, arm, axis, angle, way).or_raise().map(Self)
     }
 
     /// Returns the pose of the body at a time from 0 to 1, up to rounding.
     fn at(&self, time: f64) -> PyResult<Pose> {
-        self.0.at(time).or_raise().map(Pose)
+        self.0.pose_at(time).or_raise().map(Pose)
     }
 
     /// Formats a call that builds the motion again, up to rounding: its kind, axis, angle and the pose at
     /// time 0.
     fn __repr__(&self) -> String {
-        let start = Pose(self.0.start()).text();
+        let start = Pose(self.0.start_pose()).text();
         let [piece] = self.0.pieces() else {
             return format!("Motion.through({} screws, from {start})", self.0.pieces().len());
         };
-        let is_elsewhere = self.0.start() != colltrans::Pose::IDENTITY;
+        let is_elsewhere = self.0.start_pose() != colltrans::Pose::IDENTITY;
         let pose = is_elsewhere.then(|| format!("pose={start}"));
-        let point = piece.start.translation() - piece.arm;
+        let point = piece.start_pose.translation() - piece.arm;
         let [point, axis, arm, way] =
             [point, piece.axis, piece.arm, piece.velocity].map(coordinates);
         let rise = piece.velocity.dot(piece.axis);
@@ -263,12 +263,12 @@ fn angle_in_radians(
 /// Returns the motion of an argument: a motion, or a pose at which the body rests. Rejects three numbers,
 /// because they could be a displacement or a position.
 fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Motion> {
-    let Some(given) = of else { return Ok(motion::Motion::still(colltrans::Pose::IDENTITY)) };
+    let Some(given) = of else { return Ok(motion::Motion::at_rest(colltrans::Pose::IDENTITY)) };
     if let Ok(motion) = given.cast::<Motion>() {
         return Ok(motion.get().0.clone());
     }
     if given.is_instance_of::<Pose>() {
-        return Ok(motion::Motion::still(pose(of, name)?));
+        return Ok(motion::Motion::at_rest(pose(of, name)?));
     }
     let bare = bare_numbers(given, name)?;
     if let Bare::Numbers(Numbers { values: [x, y, z, ..], shape: Shape::Row(3) }) = bare {
@@ -281,7 +281,7 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
             ),
         ));
     }
-    Ok(motion::Motion::still(pose_from_bare(given.py(), &bare, name)?))
+    Ok(motion::Motion::at_rest(pose_from_bare(given.py(), &bare, name)?))
 }
 
 /// Two bodies and their motions, as a value: query the first contact, save and replay it.
@@ -337,7 +337,7 @@ type Arguments<'py> = ((Py<PyAny>, Py<PyAny>), Bound<'py, PyDict>);
 impl MotionCast {
     /// Returns the dents of the two meshes, if these are convex only within the tolerance.
     pub(crate) fn dents(&self) -> Option<Dents> {
-        Dents::of(self.bodies.each_ref().map(Piece::dent))
+        Dents::from_depths(self.bodies.each_ref().map(Piece::dent))
     }
 
     pub(crate) fn from_arguments(
@@ -375,7 +375,8 @@ impl MotionCast {
         }
         let [p, q] = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
         let precisions = [0, 1].map(|i| self.bodies[i].precision());
-        let cast = solid_cast([p, q], [a, b], precisions, self.min_gap, self.tolerance).or_raise()?;
+        let cast =
+            solid_cast([p, q], [a, b], precisions, self.min_gap, self.tolerance).or_raise()?;
         Ok(Of::Solids(cast.with_start_overlap(self.start_overlap)))
     }
 
@@ -387,7 +388,7 @@ impl MotionCast {
                 let found = cast.first_contact();
                 found
                     .map(Of::Convex)
-                    .map_err(|what| query_error(&what, || MotionCase::of(&cast).to_json()))
+                    .map_err(|what| query_error(&what, || MotionCase::from_cast(&cast).to_json()))
             }
             Of::Solids(cast) => cast.first_contact().or_raise().map(Of::Solids),
         })
@@ -403,7 +404,7 @@ impl MotionCast {
                 let found = cast.clearance();
                 found
                     .map(Of::Convex)
-                    .map_err(|what| query_error(&what, || MotionCase::of(&cast).to_json()))
+                    .map_err(|what| query_error(&what, || MotionCase::from_cast(&cast).to_json()))
             }
             Of::Solids(cast) => cast.clearance().or_raise().map(Of::Solids),
         })
@@ -420,11 +421,11 @@ pub(crate) fn convex_cast<'a>(
     min_gap: f64,
     tolerance: Option<f64>,
 ) -> Result<motion::MotionCast<'a>, QueryError> {
-    let cast = motion::MotionCast::new(p.along(a), q.along(b))?;
+    let cast = motion::MotionCast::new(p.with_motion(a), q.with_motion(b))?;
     match tolerance {
         // Both calls run: the first one rejects an invalid gap, the second one replaces the gap by the depth.
-        Some(depth) => cast.keeping(min_gap)?.tolerating(depth),
-        None => cast.keeping(min_gap),
+        Some(depth) => cast.with_min_gap(min_gap)?.with_tolerance(depth),
+        None => cast.with_min_gap(min_gap),
     }
 }
 
@@ -436,7 +437,8 @@ pub(crate) fn solid_cast<'a>(
     min_gap: f64,
     tolerance: Option<f64>,
 ) -> Result<motion::MotionCast<'a, Solid>, QueryError> {
-    between_motions(p.along(a), q.along(b), precisions, tolerance)?.keeping(min_gap)
+    between_motions(p.with_motion(a), q.with_motion(b), precisions, tolerance)?
+        .with_min_gap(min_gap)
 }
 
 getters!(MotionCast, |it| {
@@ -474,8 +476,13 @@ impl MotionCast {
         ignore_start_overlaps: bool,
     ) -> PyResult<Self> {
         let motions = [moving_motion, fixed_motion];
-        let query =
-            Self::from_arguments([moving, fixed], motions, min_gap, tolerance, ignore_start_overlaps)?;
+        let query = Self::from_arguments(
+            [moving, fixed],
+            motions,
+            min_gap,
+            tolerance,
+            ignore_start_overlaps,
+        )?;
         if let [Piece::Convex(_), Piece::Convex(_)] = query.bodies {
             if tolerance.is_some() && min_gap != 0.0 {
                 return Err(error("QueryError", EITHER));
@@ -503,7 +510,7 @@ impl MotionCast {
     /// The command ``colltrans replay`` reads this text too.
     fn to_json(&self) -> PyResult<String> {
         match self.asked()? {
-            Of::Convex(cast) => Ok(MotionCase::of(&cast).to_json()),
+            Of::Convex(cast) => Ok(MotionCase::from_cast(&cast).to_json()),
             Of::Solids(_) => Err(error("CaseError", "a motion of solids has no file")),
         }
     }
@@ -521,7 +528,7 @@ impl MotionCast {
         Ok(Self {
             bodies: [piece(p)?, piece(q)?],
             motions: [a.clone(), b.clone()],
-            min_gap: cast.keep(),
+            min_gap: cast.min_gap(),
             tolerance: Some(cast.tolerance()).filter(|depth| *depth > 0.0),
             start_overlap: StartOverlap::Refuse,
         })
@@ -705,7 +712,9 @@ impl Answer for Found {
 
     fn record(&self, query: &Bound<'_, MotionCast>) -> PyResult<Record> {
         match (self, query.get().asked()?) {
-            (Self::Convex(found), Of::Convex(cast)) => Ok(MotionRecord::of(found, &cast).into()),
+            (Self::Convex(found), Of::Convex(cast)) => {
+                Ok(MotionRecord::from_outcome(found, &cast).into())
+            }
             (Self::Solids(found), Of::Solids(cast)) => {
                 Ok(MotionRecord::of_solids(found, &cast).into())
             }
@@ -828,7 +837,7 @@ impl MotionClearance {
             match (query.get().asked()?, &found) {
                 (Of::Convex(cast), Of::Convex(found)) => {
                     let outcome = first_of(found).ok_or_else(unproven_error)?;
-                    cast.cleared().verify(outcome.proof())
+                    cast.with_clearance_tolerance().verify(outcome.proof())
                 }
                 (Of::Solids(cast), Of::Solids(found)) => {
                     if first_of(found).is_none() || query.get().ignore_start_overlaps() {
@@ -890,7 +899,7 @@ impl Answer for Cleared {
         match (self, query.get().asked()?) {
             (Self::Convex(found), Of::Convex(cast)) => {
                 let outcome = first_of(found).ok_or_else(unproven_error)?;
-                Ok(ProofFile::of_motion(&cast.cleared(), &outcome).to_json())
+                Ok(ProofFile::of_motion(&cast.with_clearance_tolerance(), &outcome).to_json())
             }
             (Self::Solids(found), Of::Solids(cast)) => {
                 if first_of(found).is_none() || query.get().ignore_start_overlaps() {

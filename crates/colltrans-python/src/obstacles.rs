@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use colltrans::glam::DVec3;
-use colltrans::{Among, AnyBody, ClearanceAmong, ObstacleId, QueryError};
+use colltrans::{AnyBody, ObstacleId, QueryError, SceneClearance, SceneQuery};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -66,7 +66,7 @@ impl Obstacles {
         py: Python<'_>,
         (body, at): (Piece, colltrans::Pose),
         ignore: HashSet<u64>,
-        question: impl FnOnce(&Among<'_>) -> Result<T, QueryError> + Send,
+        question: impl FnOnce(&SceneQuery<'_>) -> Result<T, QueryError> + Send,
     ) -> PyResult<(T, SceneRequest)> {
         let asked = || {
             let kept = self.scene.read();
@@ -84,7 +84,7 @@ impl Obstacles {
         (body, poses): (&Piece, &[colltrans::Pose]),
         ignore: &HashSet<u64>,
         threads: Option<usize>,
-        question: impl Fn(usize, &Among<'_>) -> Result<T, QueryError> + Sync,
+        question: impl Fn(usize, &SceneQuery<'_>) -> Result<T, QueryError> + Sync,
     ) -> PyResult<Vec<T>> {
         py.detach(|| {
             let kept = self.scene.read();
@@ -99,11 +99,11 @@ impl Obstacles {
 /// Computes how far a body can move with a minimum gap. Obstacles beyond the translation `before` are
 /// ignored.
 fn clearance_keeping(
-    among: &Among<'_>,
+    among: &SceneQuery<'_>,
     direction: DVec3,
     before: f64,
     min_gap: f64,
-) -> Result<ClearanceAmong, QueryError> {
+) -> Result<SceneClearance, QueryError> {
     with_min_gap(among, min_gap)?.clearance_before(direction, before)
 }
 
@@ -344,7 +344,7 @@ impl Obstacles {
         let (body, at) = (Piece::from_python(body, "body")?, self::pose(pose, "pose")?);
         let direction = vector(direction, "direction")?;
         let before = before.unwrap_or(f64::INFINITY);
-        let ask = |among: &Among<'_>| clearance_keeping(among, direction, before, min_gap);
+        let ask = |among: &SceneQuery<'_>| clearance_keeping(among, direction, before, min_gap);
         let (found, asked) = self.ask(py, (body, at), ignore, ask)?;
         Ok(ObstacleClearance { found, direction, min_gap, asked })
     }
@@ -434,20 +434,20 @@ impl Obstacles {
             return Err(input_error("directions", what));
         }
         let before = before.unwrap_or(f64::INFINITY);
-        let ask = |k: usize, among: &Among<'_>| {
+        let ask = |k: usize, among: &SceneQuery<'_>| {
             clearance_keeping(among, directions[k.min(directions.len() - 1)], before, min_gap)
         };
         let found = self.ask_rows(py, (&body, &poses), &ignore, threads, ask)?;
-        let kind = |one: &ClearanceAmong| match outcome_of(one) {
+        let kind = |one: &SceneClearance| match outcome_of(one) {
             "blocked" => 0_u8,
             "free" => 1,
             _ => 2,
         };
         let columns = PyDict::new(py);
         let outcome: Vec<u8> = found.iter().map(kind).collect();
-        let id = |one: &ClearanceAmong| one.stop.map_or(-1, |(id, _)| id.0 as i64);
+        let id = |one: &SceneClearance| one.stop.map_or(-1, |(id, _)| id.0 as i64);
         let ids: Vec<i64> = found.iter().map(id).collect();
-        let distance = found.iter().map(|one| one.distance().unwrap_or(f64::NAN));
+        let distance = found.iter().map(|one| one.safe_translation().unwrap_or(f64::NAN));
         let upper = found.iter().map(upper_of);
         columns.set_item("outcome", outcome.into_pyarray(py))?;
         columns.set_item("obstacle", ids.into_pyarray(py))?;

@@ -55,8 +55,8 @@ pickled!(ShrinkReport);
 
 impl From<colltrans::solid::ShrinkReport> for ShrinkReport {
     fn from(report: colltrans::solid::ShrinkReport) -> Self {
-        let colltrans::solid::ShrinkReport { farthest, stuck, inverted } = report;
-        Self { farthest, stuck, inverted }
+        let colltrans::solid::ShrinkReport { farthest, fixed_vertices, inverted } = report;
+        Self { farthest, stuck: fixed_vertices, inverted }
     }
 }
 

@@ -30,12 +30,12 @@ getters!(Contact, |it| {
     normal(py): Vector<'py> = row(py, it.contact.normal);
     /// ndarray of shape (3,): The contact point, in the world.
     point(py): PyResult<Vector<'py>> = {
-        let points = it.query.get().with(|cast| it.contact.points(cast))?;
+        let points = it.query.get().with(|cast| it.contact.witness_points(cast))?;
         Ok(row(py, points.on_fixed))
     };
     /// ndarray of shape (3,): The contact point on the moving body at its start pose, in the world.
     point_at_start(py): PyResult<Vector<'py>> = {
-        let points = it.query.get().with(|cast| it.contact.points(cast))?;
+        let points = it.query.get().with(|cast| it.contact.witness_points(cast))?;
         Ok(row(py, points.on_moving))
     };
     /// Features: The vertex, edge or face of each body in the contact plane.
@@ -212,7 +212,7 @@ getters!(LastContact, |it| {
     /// ndarray of shape (3,): The contact point, in the world.
     point(py): PyResult<Vector<'py>> = {
         let contact = it.contact()?;
-        Ok(row(py, it.turned.get().with(|cast| contact.points(cast))?.on_fixed))
+        Ok(row(py, it.turned.get().with(|cast| contact.witness_points(cast))?.on_fixed))
     };
     /// Features: The vertex, edge or face of each body in the contact plane.
     features: PyResult<Features> = {

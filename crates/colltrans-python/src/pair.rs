@@ -52,7 +52,7 @@ pub(crate) type AnyPair<'a> = Of<colltrans::Pair<'a>, colltrans::Pair<'a, Solid>
 impl Pair {
     /// Returns the dents of the two meshes, if these are convex only within the tolerance.
     pub(crate) fn dents(&self) -> Option<Dents> {
-        Dents::of(self.bodies.each_ref().map(Piece::dent))
+        Dents::from_depths(self.bodies.each_ref().map(Piece::dent))
     }
 
     pub(crate) fn from_arguments(

@@ -74,7 +74,7 @@ pub(crate) struct Cast {
 impl Cast {
     /// Returns the dents of the two meshes, if these are convex only within the tolerance.
     pub(crate) fn dents(&self) -> Option<Dents> {
-        Dents::of([&self.moving, &self.fixed].map(|body| body.get().dent()))
+        Dents::from_depths([&self.moving, &self.fixed].map(|body| body.get().dent()))
     }
 
     /// Builds a query without checking it.
@@ -86,7 +86,9 @@ impl Cast {
             fixed: fixed.clone().unbind(),
             poses: [pose(poses[0], "moving_pose")?, pose(poses[1], "fixed_pose")?],
             direction: vector(direction, "direction")?,
-            options: options_of(solver)?.with_graze_tolerance(graze_tolerance).with_keep(min_gap),
+            options: options_of(solver)?
+                .with_graze_tolerance(graze_tolerance)
+                .with_min_gap(min_gap),
         })
     }
 

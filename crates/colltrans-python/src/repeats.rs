@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 
 use colltrans::glam::DVec3;
 use colltrans::{
-    Approach, Cast, Clearance, ContactRange, ConvexPolyhedron, FixedRotations, Outcome, Pose,
+    Cast, Clearance, ContactRange, ConvexPolyhedron, DirectionMap, FixedRotations, Outcome, Pose,
     QueryError,
 };
 
@@ -106,7 +106,7 @@ impl<'a> Repeats<'a> {
     fn keep_those_that_pay(&mut self, poses: &[Table<'a>; 2]) {
         let pays = |group: &&mut Group<'a>| {
             let [moving, fixed] = group.bodies;
-            FixedRotations::pays_after(moving, fixed).is_some_and(|rows| group.rows >= rows)
+            FixedRotations::break_even_casts(moving, fixed).is_some_and(|rows| group.rows >= rows)
         };
         let mut paying: Vec<&mut Group<'a>> = self.groups.iter_mut().filter(pays).collect();
         paying.sort_by_key(|group| (std::cmp::Reverse(group.rows), group.first));
@@ -124,13 +124,13 @@ impl<'a> Repeats<'a> {
 pub(crate) enum RowAnswerer<'m, 'r, 'a> {
     Cast,
     Rotations(&'m FixedRotations<'a>),
-    Approach(&'m Approach<'r, 'a>),
+    Approach(&'m DirectionMap<'r, 'a>),
 }
 
 /// The groups, with an approach map for each group that has a single direction.
 pub(crate) struct RowAnswerers<'r, 'a> {
     repeats: &'r Repeats<'a>,
-    maps: Vec<OnceLock<Option<Approach<'r, 'a>>>>,
+    maps: Vec<OnceLock<Option<DirectionMap<'r, 'a>>>>,
 }
 
 impl<'r, 'a> RowAnswerers<'r, 'a> {
@@ -149,7 +149,7 @@ impl<'r, 'a> RowAnswerers<'r, 'a> {
             .rotations
             .get_or_init(|| FixedRotations::new(moving.at(poses[0]), fixed.at(poses[1])));
         let map = self.maps[*which as usize]
-            .get_or_init(|| group.direction.and_then(|along| rotations.along(along).ok()));
+            .get_or_init(|| group.direction.and_then(|along| rotations.for_direction(along).ok()));
         map.as_ref().map_or(RowAnswerer::Rotations(rotations), RowAnswerer::Approach)
     }
 }

@@ -6,7 +6,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use colltrans::glam::DVec3;
-use colltrans::motion::path::{JointPath, PathCast, PathContact, PathOutcome, PathProof, Place};
+use colltrans::motion::path::{
+    JointPath, PathCast, PathContact, PathOutcome, PathPlace, PathProof,
+};
 use colltrans::record::PathRecord;
 use colltrans::{AnyBody, AnyPlaced, ProofFile, Statement};
 use colltrans_assembly_io::read::{self, ReadOptions};
@@ -86,27 +88,29 @@ impl Robot {
         }
         let cell = Cell::new(self.arm.clone(), bodies, self.listed.as_deref());
         let cell = cell.map_err(|what| input_error("srdf", what))?;
-        let cell =
-            cell.with_dents(dents).ignoring(ignore).map_err(|what| input_error("ignore", what))?;
-        let cell = cell.with_a_pair().map_err(|what| input_error("scene", what))?;
+        let cell = cell
+            .with_dents(dents)
+            .without_pairs(ignore)
+            .map_err(|what| input_error("ignore", what))?;
+        let cell = cell.require_pair().map_err(|what| input_error("scene", what))?;
         Ok(PathRequest { cell, min_gap })
     }
 }
 
 impl PathRequest {
     fn path(&self, rows: &Rows) -> Result<(JointPath, Vec<String>), String> {
-        let path = self.cell.robot().path(&rows.table, &rows.rest);
+        let path = self.cell.robot().joint_path(&rows.table, &rows.rest);
         path.map_err(|what| format!("{}{what}", rows.place))
     }
 
     fn cast<'a>(&'a self, path: &'a JointPath) -> Result<PathCast<'a>, String> {
-        self.cell.along(path, self.min_gap).map_err(|what| self.cell.words(&what))
+        self.cell.path_cast(path, self.min_gap).map_err(|what| self.cell.error_message(&what))
     }
 
     fn first_contact(&self, path: &JointPath) -> Result<(PathOutcome, PathRecord), String> {
         let cast = self.cast(path)?;
-        let found = cast.first_contact().map_err(|what| self.cell.words(&what))?;
-        let record = PathRecord::of(&found, &cast, self.cell.names());
+        let found = cast.first_contact().map_err(|what| self.cell.error_message(&what))?;
+        let record = PathRecord::from_outcome(&found, &cast, self.cell.names());
         Ok((found, record))
     }
 }
@@ -239,10 +243,10 @@ impl Robot {
             .with_skip_missing(skip_missing)
             .with_allow_outside(allow_outside);
         py.detach(|| {
-            let arm = read::robot(&path, &options).or_raise()?;
-            let listed = srdf.as_deref().map(read::disabled).transpose().or_raise()?;
+            let arm = read::read_robot(&path, &options).or_raise()?;
+            let listed = srdf.as_deref().map(read::read_disabled_pairs).transpose().or_raise()?;
             // Checks that the names in the SRDF file are links of this robot.
-            arm.pairs(listed.as_deref()).map_err(|what| match &srdf {
+            arm.checked_pairs(listed.as_deref()).map_err(|what| match &srdf {
                 Some(file) => input_error("srdf", format_args!("{}: {what}", file.display())),
                 None => input_error("srdf", what),
             })?;
@@ -303,9 +307,9 @@ impl Robot {
         let notes = [asked.cell.notes(), &said].concat();
         let found = run_interruptible(py, || asked.first_contact(&path))?;
         let (found, mut record) = found.map_err(|what| error("QueryError", what))?;
-        record.hulls = asked.cell.hulls();
+        record.hulls = asked.cell.hull_links();
         record.dents.clone_from(asked.cell.dents());
-        record.notes = rows.table.straight().into_iter().collect();
+        record.notes = rows.table.unused_note().into_iter().collect();
         let (end, question) = (end_of(&path), Question::Request(asked, path));
         Ok(PathAnswer { question, end, found, record, notes })
     }
@@ -378,7 +382,7 @@ impl Question {
         match self {
             Self::Request(asked, path) => of(&asked.cast(path)?, asked.cell.names()),
             Self::Saved(file) => {
-                let (cast, names) = file.path().ok_or(NO_PATH)?;
+                let (cast, names) = file.path_query().ok_or(NO_PATH)?;
                 of(&cast, &names)
             }
         }
@@ -419,7 +423,7 @@ fn mesh_of(body: AnyPlaced<'_>) -> (&[DVec3], Vec<[u32; 3]>) {
 }
 
 fn end_of(path: &JointPath) -> (f64, usize) {
-    (path.ends()[1], path.rows().len() - 1)
+    (path.time_range()[1], path.rows().len() - 1)
 }
 
 match_args!(PathAnswer("outcome", "lower", "upper"));
@@ -562,10 +566,10 @@ impl PathAnswer {
             ));
         }
         let told = self.question.with(|cast, names| {
-            let place = Place { row, share };
+            let place = PathPlace { row, share };
             let all = cast.bodies().zip(names).enumerate();
             let placed = |(k, (body, name)): (usize, (AnyPlaced<'_>, &String))| {
-                let ((vertices, triangles), pose) = (mesh_of(body), cast.pose(k, place));
+                let ((vertices, triangles), pose) = (mesh_of(body), cast.world_pose(k, place));
                 let vertices = vertices.iter().map(|v| pose.transform_point(*v).to_array());
                 (name.clone(), vertices.collect::<Vec<_>>(), triangles)
             };
@@ -590,7 +594,8 @@ impl PathAnswer {
         py: Python<'py>,
     ) -> PyResult<Reduced<'py, (String, String, Vec<String>)>> {
         let (mut found, file) = self.outcome_and_proof(py)?;
-        let record = file.path().map(|(cast, names)| PathRecord::of(&found, &cast, &names));
+        let record =
+            file.path_query().map(|(cast, names)| PathRecord::from_outcome(&found, &cast, &names));
         if record.is_none_or(|record| record != self.record) {
             return Err(error("CaseError", "the saved proof file restores other bodies"));
         }
@@ -605,14 +610,14 @@ impl PathAnswer {
         let file = ProofFile::from_json(file).or_raise()?;
         let mut found: PathOutcome = read(found)?;
         let ((cast, names), Statement::Path(of)) =
-            (file.path().ok_or_else(|| error("CaseError", NO_PATH))?, file.statement())
+            (file.path_query().ok_or_else(|| error("CaseError", NO_PATH))?, file.statement())
         else {
             return Err(error("CaseError", NO_PATH));
         };
         if let Some(proof) = proof_of(&mut found) {
             proof.clone_from(&of.proof);
         }
-        let (record, end) = (PathRecord::of(&found, &cast, &names), end_of(cast.path()));
+        let (record, end) = (PathRecord::from_outcome(&found, &cast, &names), end_of(cast.path()));
         Ok(Self { question: Question::Saved(Box::new(file)), end, found, record, notes })
     }
 

@@ -4,7 +4,9 @@ use std::collections::HashSet;
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 use colltrans::solid::SolidOptions;
-use colltrans::{Among, AnyPlaced, ObstacleId, Options, ProofFile, ProofFileError, QueryError};
+use colltrans::{
+    AnyPlaced, ObstacleId, Options, ProofFile, ProofFileError, QueryError, SceneQuery,
+};
 use pyo3::prelude::*;
 
 use crate::errors::{OrRaise, error};
@@ -40,10 +42,10 @@ impl SceneState {
         &self,
         (body, at): (&Piece, colltrans::Pose),
         ignore: &HashSet<u64>,
-        question: impl FnOnce(&Among<'_>) -> Result<T, E>,
+        question: impl FnOnce(&SceneQuery<'_>) -> Result<T, E>,
     ) -> Result<T, E> {
         let ignored = |id: ObstacleId| ignore.contains(&id.0);
-        question(&Among::new(placed(body, at), &self.obstacles)?.ignoring(&ignored))
+        question(&SceneQuery::new(placed(body, at), &self.obstacles)?.ignoring(&ignored))
     }
 }
 
@@ -56,9 +58,12 @@ fn placed(body: &Piece, at: colltrans::Pose) -> AnyPlaced<'_> {
 }
 
 /// Returns the scene query with a minimum gap.
-pub(crate) fn with_min_gap<'a>(among: &Among<'a>, min_gap: f64) -> Result<Among<'a>, QueryError> {
-    let keeping = among.with_options(Options::default().with_keep(min_gap))?;
-    Ok(keeping.with_solid_options(SolidOptions::default().with_keep(min_gap)))
+pub(crate) fn with_min_gap<'a>(
+    among: &SceneQuery<'a>,
+    min_gap: f64,
+) -> Result<SceneQuery<'a>, QueryError> {
+    let keeping = among.with_options(Options::default().with_min_gap(min_gap))?;
+    Ok(keeping.with_solid_options(SolidOptions::default().with_min_gap(min_gap)))
 }
 
 /// The query of an answer: a body among obstacles.
@@ -76,7 +81,7 @@ impl SceneRequest {
     pub(crate) fn proof(
         &self,
         py: Python<'_>,
-        ask: impl FnOnce(&Among<'_>) -> Result<Option<ProofFile>, ProofFileError> + Send,
+        ask: impl FnOnce(&SceneQuery<'_>) -> Result<Option<ProofFile>, ProofFileError> + Send,
     ) -> PyResult<ProofFile> {
         let made = py.detach(|| {
             let kept = self.scene.read();

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
-use colltrans::{Among, ByKind, Clearance, ClearanceAmong, Nearby, ProofFile};
+use colltrans::{ByKind, Clearance, Nearby, ProofFile, SceneClearance, SceneQuery};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PyTuple};
@@ -158,7 +158,7 @@ impl NearbyObstacles {
 /// How far a body can move among obstacles, and the obstacle that stops it.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct ObstacleClearance {
-    pub(crate) found: ClearanceAmong,
+    pub(crate) found: SceneClearance,
     pub(crate) direction: DVec3,
     pub(crate) min_gap: f64,
     pub(crate) asked: SceneRequest,
@@ -168,7 +168,7 @@ proven!(ObstacleClearance);
 
 impl ObstacleClearance {
     fn proof(&self, py: Python<'_>) -> PyResult<ProofFile> {
-        let of = |among: &Among<'_>| {
+        let of = |among: &SceneQuery<'_>| {
             ProofFile::of_scene_clearance(&with_min_gap(among, self.min_gap)?, self.direction)
                 .map(Some)
         };
@@ -177,8 +177,8 @@ impl ObstacleClearance {
 }
 
 /// Returns the name of the outcome.
-pub(crate) fn outcome_of(found: &ClearanceAmong) -> &'static str {
-    match (found.stop, found.distance()) {
+pub(crate) fn outcome_of(found: &SceneClearance) -> &'static str {
+    match (found.stop, found.safe_translation()) {
         (_, None) => "overlapping",
         (Some(_), _) => "blocked",
         (None, _) => "free",
@@ -186,7 +186,7 @@ pub(crate) fn outcome_of(found: &ClearanceAmong) -> &'static str {
 }
 
 /// Returns an upper bound of the translation at which the body is stopped.
-pub(crate) fn upper_of(found: &ClearanceAmong) -> f64 {
+pub(crate) fn upper_of(found: &SceneClearance) -> f64 {
     match found.stop {
         None => f64::INFINITY,
         Some((_, ByKind::Convex(Clearance::Blocked { contact, .. }))) => contact.certificate.upper,
@@ -202,7 +202,7 @@ getters!(ObstacleClearance, |it| {
     obstacle: Option<u64> = it.found.stop.map(|(id, _)| id.0);
     /// float or None: How far the body can move past all obstacles, rounded down, in multiples of the
     /// direction; None if it overlaps one at the start.
-    distance: Option<f64> = it.found.distance();
+    distance: Option<f64> = it.found.safe_translation();
     /// float: An upper bound of the translation at which the body is stopped; infinite if nothing stops it,
     /// NaN if it overlaps an obstacle.
     upper: f64 = upper_of(&it.found);

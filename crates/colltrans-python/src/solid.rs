@@ -10,7 +10,7 @@ use std::sync::Arc;
 use colltrans::glam::DVec3;
 use colltrans::solid::{AsSolid, ShellKind};
 use colltrans_mesh::Mesh;
-use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused, load};
+use colltrans_mesh::body::{self, BodyError, BodyOptions, Loaded, load};
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -191,7 +191,7 @@ pub(crate) struct Solid {
 type MeshAndReport<'py> = (Bound<'py, PyAny>, Vec<Bound<'py, PyAny>>, bool, f64, f64, Vec<String>);
 
 impl Solid {
-    fn of_mesh(mesh: Mesh, options: BodyOptions) -> Result<Self, Refused> {
+    fn of_mesh(mesh: Mesh, options: BodyOptions) -> Result<Self, BodyError> {
         let Loaded { body: solid, precision, notes } = body::solid(&mesh, &options)?;
         let notes = notes.iter().map(ToString::to_string).collect();
         let source = Arc::new(Source::Mesh(Box::new(mesh), options));
@@ -228,7 +228,7 @@ getters!(Solid, |it| {
     /// neither shrunk nor grown.
     shells: BTreeMap<&'static str, usize> = {
         let report = it.solid.report();
-        ShellKind::ALL.into_iter().map(|kind| (kind.name(), report.count(kind))).collect()
+        ShellKind::ALL.into_iter().map(|kind| (kind.name(), report.shell_count(kind))).collect()
     };
     /// list of str: Repairs when the solid was built from its mesh, and differences from the file.
     notes: Vec<String> = it.notes.clone();

@@ -9,7 +9,7 @@ use colltrans::glam::DVec3;
 use colltrans::record::Dents;
 use colltrans::solid::SolidCast as _;
 use colltrans::solid::{SolidOptions, StartOverlap};
-use colltrans_mesh::body::between;
+use colltrans_mesh::body::cast_between;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -74,7 +74,7 @@ const LARGE: usize = 4096;
 impl SolidCast {
     /// Returns the dents of the two meshes, if these are convex only within the tolerance.
     pub(crate) fn dents(&self) -> Option<Dents> {
-        Dents::of(self.bodies.each_ref().map(Piece::dent))
+        Dents::from_depths(self.bodies.each_ref().map(Piece::dent))
     }
 
     /// Runs a query of the library.
@@ -86,8 +86,8 @@ impl SolidCast {
         let [moving, fixed] = [0, 1].map(|i| solids[i].at(self.poses[i]));
         let precisions = [0, 1].map(|i| self.bodies[i].precision());
         let SolidOptions { tolerance, start_overlap, min_gap, .. } = self.options;
-        between(moving, fixed, self.direction, precisions, tolerance, start_overlap)
-            .and_then(|cast| cast.keeping(min_gap))
+        cast_between(moving, fixed, self.direction, precisions, tolerance, start_overlap)
+            .and_then(|cast| cast.with_min_gap(min_gap))
             .map(|cast| question(&cast))
             .map_err(|what| error("QueryError", what))
     }
@@ -183,7 +183,7 @@ impl SolidCast {
             direction: vector(direction, "direction")?,
             options: SolidOptions::default()
                 .with_tolerance(tolerance)
-                .with_keep(min_gap)
+                .with_min_gap(min_gap)
                 .with_start_overlap(start_overlap),
         };
         py.detach(|| cast.run(|_| ()))?;

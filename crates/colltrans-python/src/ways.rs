@@ -1,9 +1,9 @@
 //! Removal paths: sequences of straight moves by which one body leaves another.
 
 use colltrans::Placed;
-use colltrans::removal::directions::FreeError;
 use colltrans::record::WaysRecord;
-use colltrans::removal::path::WayOptions;
+use colltrans::removal::directions::FreeError;
+use colltrans::removal::path::RemovalOptions;
 use pyo3::prelude::*;
 
 use crate::arrays::points;
@@ -18,7 +18,7 @@ use crate::solid_cast::{placed_bodies, run_patiently};
 pub(crate) struct WaysOut {
     bodies: [Piece; 2],
     poses: [colltrans::Pose; 2],
-    answer: colltrans::removal::path::WaysOut,
+    answer: colltrans::removal::path::RemovalSearch,
     record: WaysRecord,
 }
 
@@ -71,9 +71,11 @@ impl WaysOut {
         py.detach(|| {
             let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
             match &self.answer {
-                colltrans::removal::path::WaysOut::Found(way) => way.verify(&[moving, fixed]),
-                colltrans::removal::path::WaysOut::Proven(proof) => proof.verify(&moving, &fixed),
-                colltrans::removal::path::WaysOut::NotFound { .. } => Ok(()),
+                colltrans::removal::path::RemovalSearch::Found(way) => way.verify(&[moving, fixed]),
+                colltrans::removal::path::RemovalSearch::Proven(proof) => {
+                    proof.verify(&moving, &fixed)
+                }
+                colltrans::removal::path::RemovalSearch::NotFound { .. } => Ok(()),
             }
             .map_err(free_error)
         })
@@ -157,7 +159,7 @@ pub(crate) fn ways_out(
     let bodies = [Piece::from_python(moving, "moving")?, Piece::from_python(fixed, "fixed")?];
     let poses = [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?];
     let directions = directions.map_or_else(|| Ok(Vec::new()), |all| points(all, "directions"))?;
-    let options = WayOptions::default()
+    let options = RemovalOptions::default()
         .with_tolerance(tolerance)
         .with_legs(legs)
         .with_directions(directions)
@@ -166,8 +168,9 @@ pub(crate) fn ways_out(
     let copies = [bodies[0].copy(py), bodies[1].copy(py)];
     run_patiently(py, &copies, move || {
         let [moving, fixed] = place_bodies(&bodies, &poses)?;
-        let answer = colltrans::removal::path::WaysOut::of(&moving, &fixed, &options).map_err(free_error)?;
-        let record = WaysRecord::of(&answer);
+        let answer = colltrans::removal::path::RemovalSearch::search(&moving, &fixed, &options)
+            .map_err(free_error)?;
+        let record = WaysRecord::from_search(&answer);
         Ok(WaysOut { bodies, poses, answer, record })
     })
 }

@@ -1,5 +1,5 @@
-//! Directions along which a solid can be removed from another one ([`free`]), and removal paths in several
-//! moves ([`ways`]).
+//! Directions along which a solid can be removed from another one ([`directions`]), and removal paths in several
+//! moves ([`path`]).
 //!
 //! - `free` decides for every direction of the sphere whether a translation along it is free. Its module head
 //!   lists the data flow.

@@ -4,7 +4,7 @@ use super::SceneSteps;
 use colltrans_convex::body::ObstacleId;
 use colltrans_solid::kinds::{AnyClearance, AnyDistance, AnyNear};
 
-/// The answer of [`SceneQuery::nearest`](super::Among::nearest).
+/// The answer of [`SceneQuery::nearest`](super::SceneQuery::nearest).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -20,7 +20,7 @@ pub struct Nearest {
     pub steps: SceneSteps,
 }
 
-/// The answer of [`SceneQuery::within`](super::Among::within), in the order of insertion.
+/// The answer of [`SceneQuery::within`](super::SceneQuery::within), in the order of insertion.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -33,7 +33,7 @@ pub struct Nearby {
     pub steps: SceneSteps,
 }
 
-/// The answer of [`SceneQuery::clearance`](super::Among::clearance).
+/// The answer of [`SceneQuery::clearance`](super::SceneQuery::clearance).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

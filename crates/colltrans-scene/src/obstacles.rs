@@ -17,7 +17,7 @@ pub struct UnknownObstacle {
     pub id: ObstacleId,
 }
 
-/// Many placed bodies, convex ones and solids, for queries by [`SceneQuery`](crate::Among).
+/// Many placed bodies, convex ones and solids, for queries by [`SceneQuery`](crate::SceneQuery).
 ///
 /// Bodies are shared, so thousands of placements of one mesh take the memory of one. A tree of boxes is maintained.
 /// Inserting all at once ([`Self::insert_all`]) takes `O(n log n)`. Inserting, moving or removing one takes `O(log^2

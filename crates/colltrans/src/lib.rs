@@ -142,7 +142,7 @@
 //!
 //! The code is in several crates, each of which uses only the previous ones: `colltrans-kernel` (numbers,
 //! predicates, poses), `colltrans-convex` (convex bodies), `colltrans-solid`, then `colltrans-removal`
-//! ([`free`], [`ways`]), `colltrans-scene` ([`SceneQuery`], [`FixedRotations`]) and `colltrans-motion`
+//! ([`removal`]), `colltrans-scene` ([`SceneQuery`], [`FixedRotations`]) and `colltrans-motion`
 //! ([`motion`]), and `colltrans-proof` (proof files, `record`). [`solid`] contains items for solids only.
 
 #[cfg(feature = "motion")]

@@ -6,7 +6,7 @@
 //!   has assemblies. These do not use the library.
 //! - [`timing`] measures single calls and computes statistics, [`tally`] has the counts of campaigns,
 //!   [`provenance`] describes the origin of numbers, and [`golden`] hashes answers.
-//! - [`TemporaryFolder`] has the files of a test, [`cases`] is the number of random cases, and [`bodies`]
+//! - [`TemporaryFolder`] has the files of a test, [`cases`](fn@cases) is the number of random cases, and [`bodies`]
 //!   builds the bodies of tests.
 
 pub mod bodies;

@@ -1,6 +1,6 @@
 //! Reads 3MF packages. Each item of the build is a part, with its transform applied, in the unit of the file.
 //!
-//! - An object of components becomes one part for each mesh below it, or one part in total ([`Split::ForbiddenDirection`]).
+//! - An object of components becomes one part for each mesh below it, or one part in total ([`Split::Never`]).
 //!   An object without a name takes the name of the object that contains it.
 //! - A transform is twelve numbers, the rows of a matrix that is multiplied by a row vector from the left (core
 //!   specification, 3.3).
@@ -101,7 +101,7 @@ pub(super) fn read_package(source: Source) -> Result<Assembly, ReadError> {
     let (mut names, mut last) = (Names::default(), None);
     for (k, name, piece) in placed {
         match drafts.last_mut() {
-            // With `Split::ForbiddenDirection` all pieces of an item form one part.
+            // With `Split::Never` all pieces of an item form one part.
             Some(draft) if source.options.split == Split::Never && last == Some(k) => {
                 draft.pieces.push(piece);
             }

@@ -184,7 +184,7 @@ impl Interlocked {
         })
     }
 
-    /// Returns the [reason](Self::reason) and the [details](Self::details).
+    /// Returns the [reason](Self::reason_sentence) and the [details](Self::evidence_sentences).
     pub fn explain(&self, bodies: &Bodies) -> String {
         format!("{} {}", self.reason_sentence(bodies), self.evidence_sentences(bodies))
     }

@@ -1,6 +1,6 @@
 //! Removal paths of several moves, for groups that no single move removes.
 //!
-//! [`WaysOut`] searches for legs that separate some parts from the others, and proves them. Parts that were moved to
+//! [`RemovalSearch`] searches for legs that separate some parts from the others, and proves them. Parts that were moved to
 //! make room return along the same legs in reverse order after the group has left. On its way back a leg has the same
 //! relative poses as on its way out, so the same proofs hold for the remaining parts. Therefore all parts are in
 //! their initial poses after each step, and one matrix serves every state of a plan. This loses no solution: any

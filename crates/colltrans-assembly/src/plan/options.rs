@@ -16,7 +16,7 @@ pub struct PlanOptions {
     /// Whether to try to prove that no translation separates an interlocked group.
     pub prove: bool,
     /// Work limit of each search for removal paths. For each of the `legs`, a fortieth of this number of node pairs
-    /// may be visited, as of [`RemovalOptions`](colltrans::removal::path::WayOptions), and 500 casts may be made.
+    /// may be visited, as of [`RemovalOptions`](colltrans::removal::path::RemovalOptions), and 500 casts may be made.
     pub max_work: u64,
     /// Direction opposite to gravity, of any nonzero length. `None` selects that of the
     /// [assembly](crate::Assembly::up).
@@ -49,7 +49,7 @@ impl PlanOptions {
         Self { samples, ..self }
     }
 
-    /// Returns the options with another maximum number of [`legs`](Self::legs).
+    /// Returns the options with another maximum number of [`legs`](Self::max_moves).
     #[must_use]
     pub fn with_max_moves(self, legs: usize) -> Self {
         Self { max_moves: legs, ..self }
@@ -61,7 +61,7 @@ impl PlanOptions {
         Self { prove, ..self }
     }
 
-    /// Returns the options with another [work limit](Self::looks).
+    /// Returns the options with another [work limit](Self::max_work).
     #[must_use]
     pub fn with_looks(self, looks: u64) -> Self {
         Self { max_work: looks, ..self }

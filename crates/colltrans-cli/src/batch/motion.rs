@@ -168,7 +168,8 @@ pub(super) fn convex_record<B>(
     if query.ignore_start_overlaps.is_some() {
         return Err("`ignore_start_overlaps` requires solids".into());
     }
-    let cast = MotionCast::new(moving.body.along(&motions[0]), fixed.body.along(&motions[1]));
+    let cast =
+        MotionCast::new(moving.body.with_motion(&motions[0]), fixed.body.with_motion(&motions[1]));
     let cast = match (query.min_gap, query.tolerance) {
         (Some(_), Some(_)) => {
             return Err(

@@ -309,7 +309,7 @@ fn replayed_motion_has_the_same_bounds() {
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
     let start = Pose::from_translation(DVec3::new(-4.0, 0.5, 0.0)).unwrap();
     let screw = Motion::screw(start, DVec3::Z, DVec3::X, 0.5, 8.0).unwrap();
-    let cast = MotionCast::new(cube.along(&screw), cube.at(Pose::IDENTITY)).unwrap();
+    let cast = MotionCast::new(cube.with_motion(&screw), cube.at(Pose::IDENTITY)).unwrap();
     let cast = cast.with_min_gap(0.125).unwrap();
     fs::write(folder.path().join("case.json"), MotionCase::from_cast(&cast).to_json()).unwrap();
     let found = read(&answered(folder.path(), &["replay", "case.json", "--json"]));

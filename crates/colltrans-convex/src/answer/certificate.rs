@@ -9,7 +9,7 @@
 //! - Separation: `n` with `n.d = 0` and `min_Q n.q - max_P n.p > 0`.
 //!
 //! Rounding (see [`noise`]): a search rounds its bounds outwards. A check evaluates the plane nearly without
-//! rounding ([`extent`]), and accepts no lower bound or margin above the one that the plane proves.
+//! rounding ([`height_bounds`](colltrans_kernel::height_bounds)), and accepts no lower bound or margin above the one that the plane proves.
 
 use glam::DVec3;
 use thiserror::Error;

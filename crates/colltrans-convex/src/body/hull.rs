@@ -1,4 +1,4 @@
-//! The trait [`Hull`]: vertices whose convex hull is, or contains, a body. Planes are checked against them.
+//! The trait [`VertexHull`]: vertices whose convex hull is, or contains, a body. Planes are checked against them.
 
 use glam::DVec3;
 

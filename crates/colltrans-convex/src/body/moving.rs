@@ -7,7 +7,7 @@ use derive_where::derive_where;
 use crate::body::{ConvexPolyhedron, Placed};
 use colltrans_kernel::motion::Motion;
 
-/// A body and its motion, from [`ConvexPolyhedron::along`](crate::ConvexPolyhedron::along).
+/// A body and its motion, from [`ConvexPolyhedron::along`](crate::ConvexPolyhedron::with_motion).
 #[derive(Debug)]
 #[derive_where(Clone)]
 pub struct Moving<'a, B = crate::ConvexPolyhedron> {
@@ -19,7 +19,7 @@ pub struct Moving<'a, B = crate::ConvexPolyhedron> {
 
 impl ConvexPolyhedron {
     /// Pairs this body with a motion, for a cast of bodies that turn.
-    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a> {
+    pub fn with_motion<'a>(&'a self, motion: &'a Motion) -> Moving<'a> {
         Moving { body: self, motion: Cow::Borrowed(motion) }
     }
 }

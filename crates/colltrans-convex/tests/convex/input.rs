@@ -128,8 +128,8 @@ fn slides_of_thin_far_plates_stop_before_the_points_meet() {
         let way = DVec3::Z * (4.0 * truth.max(1e-3));
         let slide = Motion::translation(Pose::IDENTITY, way).expect("a motion");
         let still = Motion::at_rest(Pose::IDENTITY);
-        let cast =
-            MotionCast::new(bodies[0].along(&slide), bodies[1].along(&still)).expect("a cast");
+        let cast = MotionCast::new(bodies[0].with_motion(&slide), bodies[1].with_motion(&still))
+            .expect("a cast");
         let free = match cast.first_contact() {
             Ok(MotionOutcome::Contact(contact) | MotionOutcome::Grazing(contact)) => contact.lower,
             Ok(MotionOutcome::Overlapping(_)) | Err(_) => continue,

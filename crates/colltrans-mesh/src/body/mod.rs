@@ -1,7 +1,7 @@
 //! Builds bodies from meshes, for the command line, the page, assemblies and Python.
 //!
 //! [`convex`] and [`solid`] build a body from a mesh, [`load_convex`] and [`load_solid`] from a file. A body is
-//! accompanied by notes on repairs ([`Note`]) and by the precision of its coordinates. [`between`] computes the
+//! accompanied by notes on repairs ([`Note`]) and by the precision of its coordinates. [`cast_between`] computes the
 //! default tolerance of a query from these precisions. Therefore all front ends return the same results for the
 //! same files.
 
@@ -388,7 +388,7 @@ pub fn cast_between<'a>(
     )
 }
 
-/// Builds a cast of moving solids with given precisions, with the default tolerance of [`between`].
+/// Builds a cast of moving solids with given precisions, with the default tolerance of [`cast_between`].
 ///
 /// # Errors
 /// The errors of [`MotionCast::new`] and of its tolerance.

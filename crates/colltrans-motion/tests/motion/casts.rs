@@ -52,7 +52,8 @@ fn checked_outcome(
     motions: [&Motion; 2],
     min_gap: f64,
 ) -> MotionOutcome {
-    let cast = MotionCast::new(bodies[0].along(motions[0]), bodies[1].along(motions[1]));
+    let cast =
+        MotionCast::new(bodies[0].with_motion(motions[0]), bodies[1].with_motion(motions[1]));
     let cast = cast.and_then(|cast| cast.with_min_gap(min_gap)).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
     let proof = proof_of(&outcome);
@@ -238,7 +239,8 @@ fn resting_part_with_tolerance_may_rotate_and_leave_but_not_sink() {
     let (part, table) = (cuboid([0.5; 3]), cuboid([5.0, 5.0, 1.0]));
     let still = Motion::at_rest(at(0.0, 0.0, -1.5));
     let query = |motion: &Motion, depth: f64| {
-        let cast = MotionCast::new(part.along(motion), table.along(&still)).expect("a cast");
+        let cast =
+            MotionCast::new(part.with_motion(motion), table.with_motion(&still)).expect("a cast");
         let cast = cast.with_tolerance(depth).expect("a depth");
         let outcome = cast.first_contact().expect("an answer");
         cast.verify(proof_of(&outcome)).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
@@ -301,7 +303,8 @@ fn direction_of_least_depth_may_change_within_tolerance() {
             Motion::screw(Pose::IDENTITY, DVec3::ZERO, by, 1e-3, by.length()),
         ];
         for motion in motions.map(|motion| motion.expect("a motion")) {
-            let cast = MotionCast::new(block.along(&motion), table.along(&still)).expect("a cast");
+            let cast = MotionCast::new(block.with_motion(&motion), table.with_motion(&still))
+                .expect("a cast");
             let cast = cast.with_tolerance(0.2).expect("a depth");
             let outcome = cast.first_contact().expect("an answer");
             cast.verify(outcome.proof()).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
@@ -331,7 +334,7 @@ fn tolerated_depth_is_first_exceeded_within_bounds() {
         let along = random_motion(&mut random, most);
         let still = Motion::at_rest(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"));
         let depth = 10.0_f64.powf(random.range(-4.0, 0.0));
-        let cast = MotionCast::new(p.along(&along), q.along(&still)).expect("a cast");
+        let cast = MotionCast::new(p.with_motion(&along), q.with_motion(&still)).expect("a cast");
         let cast = cast.with_tolerance(depth).expect("a depth");
         let outcome = cast.first_contact().expect("an answer");
         cast.verify(outcome.proof()).unwrap_or_else(|error| panic!("{seed} {error}: {outcome:?}"));
@@ -375,7 +378,7 @@ fn contacts_take_few_samples_and_support_points() {
         let mut random = Random::new(seed);
         let along = random_motion(&mut random, 6.0);
         let pose = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
-        let cast = MotionCast::new(p.along(&along), q.at(pose)).expect("a cast");
+        let cast = MotionCast::new(p.with_motion(&along), q.at(pose)).expect("a cast");
         let outcome = cast.first_contact().expect("an answer");
         if let MotionOutcome::Contact(found) = &outcome {
             contacts += 1;
@@ -394,7 +397,8 @@ fn too_long_motions_return_coarse_error() {
     let still = Motion::at_rest(at(3.0, 0.0, 0.0));
     for far in [1e20, 1e50, 1e60] {
         let slide = Motion::translation(Pose::IDENTITY, DVec3::X * far).expect("a motion");
-        let cast = MotionCast::new(cube.along(&slide), cube.along(&still)).expect("a cast");
+        let cast =
+            MotionCast::new(cube.with_motion(&slide), cube.with_motion(&still)).expect("a cast");
         let solids =
             MotionCast::new(solid.with_motion(&slide), solid.with_motion(&still)).expect("a cast");
         for found in [cast.first_contact().map(|_| ()), solids.first_contact().map(|_| ())] {
@@ -404,7 +408,8 @@ fn too_long_motions_return_coarse_error() {
         assert!(matches!(found, Err(QueryError::PositionError { .. })), "{far:e}: {found:?}");
         // Bodies that move apart never meet, at any distance.
         let away = Motion::translation(at(1e60, 0.0, 0.0), DVec3::X * 1e40).expect("a motion");
-        let cast = MotionCast::new(cube.along(&away), cube.along(&still)).expect("a cast");
+        let cast =
+            MotionCast::new(cube.with_motion(&away), cube.with_motion(&still)).expect("a cast");
         assert!(matches!(cast.first_contact(), Ok(MotionOutcome::Free(_))));
     }
 }
@@ -449,7 +454,7 @@ fn modified_proof_is_rejected_or_equivalent() {
         let [p, q] = [hull(10, &mut random), hull(10, &mut random)];
         let along = random_motion(&mut random, 4.0);
         let still = Motion::at_rest(Pose::IDENTITY);
-        let cast = MotionCast::new(p.along(&along), q.along(&still)).expect("a cast");
+        let cast = MotionCast::new(p.with_motion(&along), q.with_motion(&still)).expect("a cast");
         let outcome = cast.first_contact().expect("an answer");
         let original = proof_of(&outcome).clone();
         if original.spans.iter().all(Vec::is_empty) {
@@ -481,7 +486,7 @@ fn modified_proof_is_rejected_or_equivalent() {
     assert!(refused > 200, "{refused}");
     let cube = cuboid([0.5; 3]);
     let (along, still) = (Motion::at_rest(at(3.0, 0.0, 0.0)), Motion::at_rest(Pose::IDENTITY));
-    let cast = MotionCast::new(cube.along(&along), cube.along(&still)).expect("a cast");
+    let cast = MotionCast::new(cube.with_motion(&along), cube.with_motion(&still)).expect("a cast");
     let found = cast.first_contact().expect("an answer");
     let mut turned = proof_of(&found).clone();
     turned.spans.push(turned.spans[0].clone());
@@ -504,7 +509,8 @@ fn rotations_of_all_families_have_verified_proofs() {
                 continue;
             };
             let still = Motion::at_rest(b);
-            let cast = MotionCast::new(cast.moving().along(&turn), cast.fixed().along(&still));
+            let cast =
+                MotionCast::new(cast.moving().with_motion(&turn), cast.fixed().with_motion(&still));
             let cast = cast.expect("a cast");
             let outcome = cast.first_contact().unwrap_or_else(|e| panic!("{family} {seed}: {e}"));
             let checked = cast.verify(proof_of(&outcome));
@@ -526,7 +532,7 @@ fn start_overlap_is_reported_for_any_minimum_gap() {
         let (p, q) = (cube(half), cube(2.0 * half));
         let axis = DVec3::new(1.0, 2.0, 3.0).normalize();
         let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, axis, 1.0).expect("a turn");
-        let cast = MotionCast::new(p.along(&turn), q.at(Pose::IDENTITY)).expect("a cast");
+        let cast = MotionCast::new(p.with_motion(&turn), q.at(Pose::IDENTITY)).expect("a cast");
         let cast = cast.with_min_gap(min_gap).expect("a gap");
         let outcome = cast.first_contact().expect("an answer");
         assert!(matches!(outcome, MotionOutcome::Overlapping(_)), "{half} {min_gap}: {outcome:?}");
@@ -546,7 +552,7 @@ fn two_points_passing_through_each_other_graze() {
     let motion = Motion::translation(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion");
     for x in [0.0, 1.0, 3.7] {
         let pose = Pose::from_translation(DVec3::X * x).expect("a pose");
-        let cast = MotionCast::new(point.along(&motion), point.at(pose)).expect("a cast");
+        let cast = MotionCast::new(point.with_motion(&motion), point.at(pose)).expect("a cast");
         let outcome = cast.first_contact().expect("an answer");
         let MotionOutcome::Grazing(contact) = &outcome else { panic!("{outcome:?}") };
         assert!((contact.lower - 0.25 * x).abs() < 1e-12, "{}", contact.lower);

@@ -198,7 +198,7 @@ fn translated_convex_bodies_match_linear_clearance() {
             (a, b, random.vector() * 6.0)
         };
         let slide = Motion::translation(a, by).expect("a motion");
-        let cast = MotionCast::new(p.along(&slide), q.at(b)).expect("a cast");
+        let cast = MotionCast::new(p.with_motion(&slide), q.at(b)).expect("a cast");
         let clearance = cast.clearance().expect("an answer");
         let straight = Cast::new(p.at(a), q.at(b), by).expect("a cast").clearance();
         let straight = match straight.expect("an answer") {
@@ -219,7 +219,8 @@ fn translated_convex_bodies_match_linear_clearance() {
         }
         // The answer is the same for the bodies as solids.
         let rest = Motion::at_rest(b);
-        let mixed = MotionCast::between_any(p.along(&slide), q.along(&rest)).expect("a cast");
+        let mixed =
+            MotionCast::between_any(p.with_motion(&slide), q.with_motion(&rest)).expect("a cast");
         let mixed = summary_of(&mixed.clearance().expect("an answer"));
         assert!(are_consistent(mixed, turning, 1e-9), "{seed}: {mixed:?} {turning:?}");
         counts[match turning {
@@ -280,7 +281,7 @@ fn resting_brick_may_rotate_and_slide_but_not_sink() {
     ];
     for (is_free, motion) in motions {
         let motion = motion.expect("a motion");
-        let cast = MotionCast::new(brick.along(&motion), table.at(here)).expect("a cast");
+        let cast = MotionCast::new(brick.with_motion(&motion), table.at(here)).expect("a cast");
         match cast.clearance().expect("an answer") {
             MotionClearance::Free(_) => assert!(is_free),
             MotionClearance::Blocked { time, contact } => {
@@ -292,7 +293,7 @@ fn resting_brick_may_rotate_and_slide_but_not_sink() {
     // It slides, and is pushed into the table from the middle of the motion on. It is blocked there, not at the start.
     let poses = [here, at(1.0, 0.0, 0.0), at(1.0, 0.0, -1.0)];
     let pushed = Motion::through_poses(&poses).expect("a motion");
-    let cast = MotionCast::new(brick.along(&pushed), table.at(here)).expect("a cast");
+    let cast = MotionCast::new(brick.with_motion(&pushed), table.at(here)).expect("a cast");
     let ClearanceSummary::Blocked(place, _) = summary_of(&cast.clearance().expect("an answer"))
     else {
         panic!("it is pushed in")
@@ -300,7 +301,7 @@ fn resting_brick_may_rotate_and_slide_but_not_sink() {
     assert!((place[0] - 0.5).abs() < 1e-11 && (place[1] - 0.5).abs() < 1e-11, "{place:?}");
     // An eighth deep in the table.
     let sunk = Motion::translation(at(0.0, 0.0, -0.125), DVec3::X).expect("a motion");
-    let cast = MotionCast::new(brick.along(&sunk), table.at(here)).expect("a cast");
+    let cast = MotionCast::new(brick.with_motion(&sunk), table.at(here)).expect("a cast");
     let MotionClearance::Overlapping(found) = cast.clearance().expect("an answer") else {
         panic!("it overlaps")
     };
@@ -309,7 +310,7 @@ fn resting_brick_may_rotate_and_slide_but_not_sink() {
     assert!(cast.clearance().expect("an answer").is_free());
     // Nearer than the gap by 0.05.
     let above = Motion::translation(at(0.0, 0.0, 0.25), DVec3::X).expect("a motion");
-    let cast = MotionCast::new(brick.along(&above), table.at(here)).expect("a cast");
+    let cast = MotionCast::new(brick.with_motion(&above), table.at(here)).expect("a cast");
     assert!(
         cast.clone().with_min_gap(0.25).expect("a gap").clearance().expect("an answer").is_free()
     );

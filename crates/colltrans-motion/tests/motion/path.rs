@@ -82,7 +82,7 @@ fn path_of_one_joint_matches_rotation() {
         // Near the path of the body.
         let by = turn.pose_at(random.unit()).expect("a pose").translation() + random.vector() * 2.0;
         let there = at(by.x, by.y, by.z);
-        let cast = MotionCast::new(p.along(&turn), q.at(there)).expect("a cast");
+        let cast = MotionCast::new(p.with_motion(&turn), q.at(there)).expect("a cast");
         let origin = Pose::from_translation(point).expect("a pose");
         let frame = Frame { parent: None, origin, joint: Joint::Turning(axis) };
         let mechanism = Mechanism::new(vec![frame]).expect("a joint");

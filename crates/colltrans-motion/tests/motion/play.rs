@@ -39,13 +39,14 @@ fn one_carried_plane_proves_sliding_along_common_axis() {
     let beside = Pose::from_translation(DVec3::new(1.0 + 1e-9, 0.2, 0.1)).unwrap();
     let screw = |pose, rise| Motion::screw(pose, DVec3::ZERO, DVec3::Z, 100.0 * TAU, rise).unwrap();
     let (moving, fixed) = (screw(Pose::IDENTITY, 0.7), screw(beside, 0.1));
-    let cast = MotionCast::new(cube.along(&moving), cube.along(&fixed)).unwrap();
+    let cast = MotionCast::new(cube.with_motion(&moving), cube.with_motion(&fixed)).unwrap();
     let outcome = cast.first_contact().unwrap();
     assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
     assert_eq!(cast.verify(outcome.proof()).unwrap(), [1.0, f64::INFINITY]);
     assert!(outcome.steps().looks <= 3, "{:?}", outcome.steps());
     // The search between solids has the same outcome.
-    let solids = MotionCast::between_any(cube.along(&moving), cube.along(&fixed)).unwrap();
+    let solids =
+        MotionCast::between_any(cube.with_motion(&moving), cube.with_motion(&fixed)).unwrap();
     let outcome = solids.with_tolerance(0.0).unwrap().first_contact().unwrap();
     assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
 }
@@ -57,8 +58,8 @@ fn proof_of_solids_is_rejected_for_other_queries() {
     let there = Pose::from_translation(DVec3::X * 1.5).unwrap();
     let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.5).unwrap();
     let rest = Motion::at_rest(there);
-    let cast = MotionCast::new(cube.along(&turn), cube.along(&rest)).unwrap();
-    let solids = MotionCast::between_any(cube.along(&turn), cube.along(&rest)).unwrap();
+    let cast = MotionCast::new(cube.with_motion(&turn), cube.with_motion(&rest)).unwrap();
+    let solids = MotionCast::between_any(cube.with_motion(&turn), cube.with_motion(&rest)).unwrap();
     let solids = solids.with_tolerance(0.0).unwrap().certified_first_contact().unwrap();
     let mut proof = cast.first_contact().unwrap().proof().clone();
     proof.spans.clear();

@@ -10,7 +10,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 /// Computes the first contact and verifies its proof.
 fn verified_outcome([p, q]: [&ConvexPolyhedron; 2], [a, b]: [&Motion; 2]) -> MotionOutcome {
-    let cast = MotionCast::new(p.along(a), q.along(b)).expect("a cast");
+    let cast = MotionCast::new(p.with_motion(a), q.with_motion(b)).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
     cast.verify(outcome.proof()).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
     outcome

@@ -13,7 +13,7 @@ type MovingBody<'a> = (&'a ConvexPolyhedron, &'a Motion);
 
 /// Computes the first contact and verifies its proof.
 fn verified_outcome([(p, a), (q, b)]: [MovingBody; 2]) -> MotionOutcome {
-    let cast = MotionCast::new(p.along(a), q.along(b)).expect("a cast");
+    let cast = MotionCast::new(p.with_motion(a), q.with_motion(b)).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
     cast.verify(outcome.proof()).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
     outcome

@@ -100,8 +100,9 @@ fn convex_bodies_as_solids_match_convex_search() {
         } else {
             Motion::at_rest(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"))
         };
-        let convex = MotionCast::new(p.along(&along), q.along(&other)).expect("a cast");
-        let solids = MotionCast::between_any(p.along(&along), q.along(&other)).expect("a cast");
+        let convex = MotionCast::new(p.with_motion(&along), q.with_motion(&other)).expect("a cast");
+        let solids =
+            MotionCast::between_any(p.with_motion(&along), q.with_motion(&other)).expect("a cast");
         match (
             convex.first_contact().expect("an answer"),
             checked_outcome(&solids, [&along, &other]),

@@ -19,7 +19,7 @@ fn at(x: f64) -> Pose {
 fn sliding_cube_proof(min_gap: f64) -> Value {
     let (cube, motion) =
         (cube(), Motion::translation(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion"));
-    let cast = MotionCast::new(cube.along(&motion), cube.at(at(3.0))).expect("a cast");
+    let cast = MotionCast::new(cube.with_motion(&motion), cube.at(at(3.0))).expect("a cast");
     let cast = cast.with_min_gap(min_gap).expect("a gap");
     let outcome = cast.first_contact().expect("an answer");
     serde_json::from_str(&ProofFile::of_motion(&cast, &outcome).to_json()).expect("JSON")
@@ -69,7 +69,7 @@ fn contact_without_planes_claims_only_upper_bound() {
 #[test]
 fn motion_piece_starting_at_end_is_rejected() {
     let (cube, motion) = (cube(), Motion::translation(Pose::IDENTITY, DVec3::Y).expect("a motion"));
-    let cast = MotionCast::new(cube.along(&motion), cube.at(at(3.0))).expect("a cast");
+    let cast = MotionCast::new(cube.with_motion(&motion), cube.at(at(3.0))).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
     let file = ProofFile::of_motion(&cast, &outcome).to_json();
     let mut file: Value = serde_json::from_str(&file).expect("JSON");

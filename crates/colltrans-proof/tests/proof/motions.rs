@@ -20,7 +20,8 @@ fn motion_case_round_trips_exactly() {
                 continue;
             };
             let Ok(back) = Motion::between_poses(b, a) else { continue };
-            let asked = MotionCast::new(cast.moving().along(&turn), cast.fixed().along(&back));
+            let asked =
+                MotionCast::new(cast.moving().with_motion(&turn), cast.fixed().with_motion(&back));
             let asked = asked.expect("a cast");
             let asked = match seed % 3 {
                 0 => asked,
@@ -44,7 +45,8 @@ fn invalid_motion_case_is_rejected_with_reason() {
     let bodies = setting.bodies().expect("bodies");
     let cast = setting.query(&bodies).expect("a query");
     let slide = Motion::translation(cast.moving_pose(), cast.direction()).expect("a motion");
-    let asked = MotionCast::new(cast.moving().along(&slide), cast.fixed().at(cast.fixed_pose()));
+    let asked =
+        MotionCast::new(cast.moving().with_motion(&slide), cast.fixed().at(cast.fixed_pose()));
     let asked = asked.expect("a cast");
     let good = MotionCase::from_cast(&asked).to_json();
     let proof = ProofFile::of_motion(&asked, &asked.first_contact().expect("an answer")).to_json();
@@ -75,8 +77,8 @@ fn joined_motion_proofs_store_solid_proof_as_solids() {
     let cube = ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).unwrap();
     let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.5).unwrap();
     let rest = Motion::at_rest(Pose::from_translation(DVec3::X * 1.5).unwrap());
-    let cast = MotionCast::new(cube.along(&turn), cube.along(&rest)).unwrap();
-    let solids = MotionCast::between_any(cube.along(&turn), cube.along(&rest)).unwrap();
+    let cast = MotionCast::new(cube.with_motion(&turn), cube.with_motion(&rest)).unwrap();
+    let solids = MotionCast::between_any(cube.with_motion(&turn), cube.with_motion(&rest)).unwrap();
     let solids = solids.with_tolerance(0.0).unwrap().certified_first_contact().unwrap();
     let convex = cast.first_contact().unwrap();
     let MotionOutcome::Free(mut free) = convex.clone() else { panic!("{convex:?}") };
@@ -109,8 +111,9 @@ fn solid_proof_does_not_cover_hull_error() {
     let (rest, slide) =
         (Motion::at_rest(Pose::IDENTITY), Motion::translation(beside, DVec3::Y * 6.0));
     let slide = slide.unwrap();
-    let cast = MotionCast::new(block.along(&slide), block.along(&rest)).unwrap();
-    let solids = MotionCast::between_any(block.along(&slide), block.along(&rest)).unwrap();
+    let cast = MotionCast::new(block.with_motion(&slide), block.with_motion(&rest)).unwrap();
+    let solids =
+        MotionCast::between_any(block.with_motion(&slide), block.with_motion(&rest)).unwrap();
     let solids = solids.with_tolerance(0.0).unwrap().certified_first_contact().unwrap();
     let mut proof = cast.first_contact().unwrap().proof().clone();
     (proof.spans, proof.meeting) = (Vec::new(), None);

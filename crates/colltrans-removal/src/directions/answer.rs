@@ -101,7 +101,7 @@ struct Areas {
     undecided: f64,
 }
 
-/// All directions along which a solid can leave another one. [`Self::of`] computes them.
+/// All directions along which a solid can leave another one. [`Self::compute`] computes them.
 pub struct FreeDirections<'a> {
     /// The cast along an arbitrary direction.
     cast: Cast<'a, Solid>,
@@ -155,10 +155,10 @@ impl<'a> FreeDirections<'a> {
         Self::search_all(moving, fixed, options, None)
     }
 
-    /// Computes the free directions like [`Self::of`], and stops soon after the flag is set.
+    /// Computes the free directions like [`Self::compute`], and stops soon after the flag is set.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::of`], and [`FreeError::Cancelled`] if the flag was set.
+    /// Returns the errors of [`Self::compute`], and [`FreeError::Cancelled`] if the flag was set.
     pub fn compute_unless_cancelled<A: AsSolid, B: AsSolid>(
         moving: &Placed<'a, A>,
         fixed: &Placed<'a, B>,
@@ -429,7 +429,7 @@ impl<'a> FreeDirections<'a> {
     /// any origin.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::of`], and [`FreeError::NotProven`] if a claim is not proven.
+    /// Returns the errors of [`Self::compute`], and [`FreeError::NotProven`] if a claim is not proven.
     pub fn from_proof<A: AsSolid, B: AsSolid>(
         moving: &Placed<'a, A>,
         fixed: &Placed<'a, B>,
@@ -448,7 +448,7 @@ impl<'a> FreeDirections<'a> {
     /// proof themselves. Areas are 0.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::of`], and [`FreeError::NotProven`] if the cells do not partition the
+    /// Returns the errors of [`Self::compute`], and [`FreeError::NotProven`] if the cells do not partition the
     /// sphere or name facets or boxes that do not exist.
     pub fn from_trusted_proof<A: AsSolid, B: AsSolid>(
         moving: &Placed<'a, A>,

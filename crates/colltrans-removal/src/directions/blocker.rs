@@ -54,7 +54,7 @@ impl<'a> CellBlocker<'a> {
     /// used.
     ///
     /// # Errors
-    /// Returns the errors of [`FreeDirections::of`](super::FreeDirections::of).
+    /// Returns the errors of [`FreeDirections::compute`](super::FreeDirections::compute).
     pub fn new<A: AsSolid, B: AsSolid>(
         moving: &Placed<'a, A>,
         fixed: &Placed<'a, B>,

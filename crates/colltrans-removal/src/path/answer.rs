@@ -121,7 +121,7 @@ impl RemovalSearch {
     /// 63 bodies the answer is [`Self::NotFound`] without a search.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::of`], and [`FreeError::Cancelled`] after the flag is set. Overlaps of
+    /// Returns the errors of [`Self::search`], and [`FreeError::Cancelled`] after the flag is set. Overlaps of
     /// more than two bodies are not errors.
     pub fn search_among(
         bodies: &[Placed<'_, Solid>],

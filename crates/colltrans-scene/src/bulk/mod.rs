@@ -39,8 +39,8 @@ const MIN_CASTS: usize = 500;
 ///
 /// The faces of the Minkowski difference are computed once. This pays off after about 500 casts plus one for each
 /// vertex pair
-/// ([`Self::pays_after`]). A cast of bodies with up to 64 vertices then takes at most a third of the time. A cast along
-/// a direction that is used repeatedly ([`Self::along`]) takes a sixth. Answers have the certificates of ordinary
+/// ([`Self::break_even_casts`]). A cast of bodies with up to 64 vertices then takes at most a third of the time. A cast along
+/// a direction that is used repeatedly ([`Self::for_direction`]) takes a sixth. Answers have the certificates of ordinary
 /// casts, and [`Cast::verify`] checks them.
 ///
 /// These casts are answered by the ordinary search instead:

@@ -16,7 +16,7 @@ pub(crate) const NO_NEIGHBOUR: u32 = u32::MAX;
 
 /// The pairs of half-edges of a mesh, and the half-edges without a partner.
 pub(super) struct Edges {
-    /// The triangle across each half-edge, or [`NONE`].
+    /// The triangle across each half-edge, or [`NO_NEIGHBOUR`].
     pub(super) neighbours: Vec<[u32; 3]>,
     /// Half-edges without a partner, at edges with an odd number of facets.
     pub(super) open: Vec<u32>,

@@ -35,8 +35,8 @@ pub struct Node {
     pub bounds: Aabb,
     pub(crate) axis: DVec3,
     pub(crate) slab: [f64; 2],
-    /// Upper bound on the sine of the largest angle between `axis` and the normal of a facet. It is [`ANY`] from a
-    /// right angle, and [`OPEN`] if a facet belongs to an open shell.
+    /// Upper bound on the sine of the largest angle between `axis` and the normal of a facet. It is [`ANY_ANGLE`] from a
+    /// right angle, and [`OPEN_SPREAD`] if a facet belongs to an open shell.
     pub spread: f32,
     /// Offset to the first child; 0 for a leaf.
     pub child_offset: u32,
@@ -141,7 +141,7 @@ impl Boxed for Item {
 /// Returns the area vector of a triangle (twice the area times the unit normal), and an upper bound on the sine of
 /// the angle by which rounding turns this vector.
 ///
-/// The bound is 0 for facets in planes of the axes, and [`ANY`] if the error may be as large as the vector.
+/// The bound is 0 for facets in planes of the axes, and [`ANY_ANGLE`] if the error may be as large as the vector.
 /// Derivation: `docs/theory/solid-bounds.md`.
 #[inline]
 pub fn area_vector([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
@@ -344,7 +344,7 @@ impl Builder<'_> {
 }
 
 /// Returns the squared sine of the angle between a unit axis and the normal of a facet, and an upper bound on its
-/// error, a sine. Returns [`ANY`] for both if the angle may be a right angle or more.
+/// error, a sine. Returns [`ANY_ANGLE`] for both if the angle may be a right angle or more.
 fn normal_deviation(axis: DVec3, item: &Item) -> [f64; 2] {
     if item.doubt >= 1.0 || axis.dot(item.normal) <= 0.0 {
         return [ANY_ANGLE; 2];

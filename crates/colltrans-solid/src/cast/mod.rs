@@ -82,7 +82,7 @@ pub struct SolidOptions {
     /// serves many directions. With `None` the query tests for an overlap. It does so too for `Some(true)` with
     /// [`StartOverlap::Refuse`], because the answer contains the place.
     pub overlapping: Option<bool>,
-    /// Minimum gap (world units), see [`Cast::keeping`]. With `0`, the default, bodies block when they touch.
+    /// Minimum gap (world units), see [`Cast::with_min_gap`]. With `0`, the default, bodies block when they touch.
     #[cfg_attr(
         feature = "serde",
         serde(default, skip_serializing_if = "colltrans_kernel::serialization::is_zero")

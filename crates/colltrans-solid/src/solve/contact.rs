@@ -1,7 +1,7 @@
 //! From a pair of facets to a contact: points, normal, features, and the translation with bounds.
 //!
 //! - [`SolidContact::offset_distance`] is the travel of the offset bodies. The pair's gap plus its error is the upper
-//!   bound. The lower bound also covers all other pairs ([`Found::others`]).
+//!   bound. The lower bound also covers all other pairs ([`LeastGap::others`]).
 //! - [`SolidContact::translation`] is the travel at which the same two facets meet in nominal position.
 //! - Up to its `lower` the offset bodies do not overlap, which is proven, and the two facets have not met. Beyond its
 //!   `upper` the bodies overlap.

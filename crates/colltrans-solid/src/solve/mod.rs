@@ -3,7 +3,7 @@
 //! - [`scene`]: two placed solids and a direction, in the frames that the folder shares.
 //! - [`overlap`]: whether the solids overlap at the start, exactly; [`inside`] tests nested shells.
 //! - [`search`]: the least gap along the direction, best first through both trees. [`bound`] bounds pairs of nodes from
-//!   their [`projected`] bounds and [`separating_axes`]; [`leaf`] compares pairs of facets, and [`rim`] edge-on facets
+//!   their [`projected`] bounds and [`separating_axes`]; [`leaf`] compares pairs of facets, and [`edge_on`] edge-on facets
 //!   of open shells.
 //! - [`contact`]: points, normal, features and bounds of the result.
 //! - [`separate`], [`parted`]: a separating plane parallel to the direction, or of any direction.

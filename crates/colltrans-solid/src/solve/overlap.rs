@@ -50,7 +50,7 @@ pub fn find_overlap(scene: &PairFrame, steps: &mut SolidSteps) -> Option<Overlap
     find_overlap_with(scene, &mut |entry| steps.count_pair(entry))
 }
 
-/// Finds an overlap like [`find`]. Calls `cut` for every pair of nodes in the order of the descent, with `None` if the
+/// Finds an overlap like [`find_overlap`]. Calls `cut` for every pair of nodes in the order of the descent, with `None` if the
 /// pair was split, otherwise with the reason.
 pub(crate) fn find_overlap_with(
     scene: &PairFrame,

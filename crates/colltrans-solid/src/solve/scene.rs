@@ -5,11 +5,11 @@
 //!   height. Its coordinates are rounded.
 //! - Exact signs are computed from setting frame coordinates: sums of products of matrix entries, vertices and
 //!   translations, without rounding.
-//! - A coordinate of the query frame has an error of at most [`Scene::noise`], `32 u S`. Coordinates are *exact* if all
+//! - A coordinate of the query frame has an error of at most [`PairFrame::noise`], `32 u S`. Coordinates are *exact* if all
 //!   axes of the query frame are axes of the body and of the world, and neither the translation nor its addition is
 //!   rounded.
-//! - A pose's matrix `R` may deviate from a rotation by `1e-6`. [`Side::skew_bound`] bounds the effect on coordinates
-//!   along an axis `R n`, and [`Side::defect`] the rotation of a facet's normal. Derivation:
+//! - A pose's matrix `R` may deviate from a rotation by `1e-6`. [`PlacedBody::skew_bound`] bounds the effect on coordinates
+//!   along an axis `R n`, and [`PlacedBody::defect`] the rotation of a facet's normal. Derivation:
 //!   `docs/theory/solid-rounding.md`.
 
 use std::cell::OnceCell;
@@ -244,7 +244,7 @@ pub struct PlacedVertex {
 pub trait ExactPoint {
     /// Returns the rounded position in the query frame.
     fn query_position(&self) -> DVec3;
-    /// Checks whether [`Self::at`] is exact.
+    /// Checks whether [`Self::query_position`] is exact.
     fn is_exact(&self) -> bool;
     /// Returns the position in the setting frame; `None` if `f64` cannot represent it exactly.
     fn exact_position(&self, scene: &PairFrame) -> Option<DVec3>;
@@ -363,7 +363,7 @@ fn frame_along(unit: DVec3) -> DMat3 {
     DMat3::from_cols(x, unit.cross(x), unit).transpose()
 }
 
-/// Returns [`Side::inward`] of a body that is offset by `amount`.
+/// Returns [`PlacedBody::inward`] of a body that is offset by `amount`.
 fn inward_side(along: DVec3, aligned: [bool; 3], moving: bool, amount: f64) -> u8 {
     if !aligned[2] || amount != 0.0 {
         return u8::MAX;

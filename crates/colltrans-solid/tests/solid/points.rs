@@ -553,7 +553,8 @@ fn motions_take_points_and_segments() {
     let rest = Motion::at_rest(still());
     // An edge of the rod passes through the face: that is proven.
     let rod = segment([-4, -1, 0], [-4, 1, 0]);
-    let cast = MotionCast::between_any(rod.along(&turn), slab.with_motion(&rest)).expect("a cast");
+    let cast =
+        MotionCast::between_any(rod.with_motion(&turn), slab.with_motion(&rest)).expect("a cast");
     let cast = cast.with_tolerance(0.0).expect("none");
     let found = cast.certified_first_contact().expect("an answer");
     let MotionOutcome::Contact(contact) = found else { panic!("no contact: {found:?}") };
@@ -570,9 +571,9 @@ fn motions_take_points_and_segments() {
         .expect("a turn");
     for moves in [true, false] {
         let cast = if moves {
-            MotionCast::between_any(tip.along(&turn), slab.with_motion(&rest))
+            MotionCast::between_any(tip.with_motion(&turn), slab.with_motion(&rest))
         } else {
-            MotionCast::between_any(slab.with_motion(&back), tip.along(&rest))
+            MotionCast::between_any(slab.with_motion(&back), tip.with_motion(&rest))
         };
         let cast = cast.expect("a cast");
         let found = cast.certified_first_contact().expect("an answer");
@@ -629,8 +630,8 @@ fn points_and_segments_that_turn_into_a_body_meet_it_in_proven_bounds() {
         let axis = random.pick(&[DVec3::X, DVec3::Y, DVec3::Z]);
         let about = float(body.place(small(&mut random, -2, 8)));
         let turn = Motion::rotation_about(still(), about, axis, 2.0).expect("a turn");
-        let cast =
-            MotionCast::between_any(thin.along(&turn), solid.with_motion(&rest)).expect("a cast");
+        let cast = MotionCast::between_any(thin.with_motion(&turn), solid.with_motion(&rest))
+            .expect("a cast");
         let cast = cast.with_tolerance(0.0).expect("none");
         let place = |time: f64, share: f64| {
             let start = float(p).lerp(float(if is_point { p } else { q }), share);

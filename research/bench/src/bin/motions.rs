@@ -127,7 +127,7 @@ fn measure_row(name: &str, run: &Run, draw: impl Fn(&mut Random) -> Option<Turni
         let Turning { bodies: [p, q], start, center, velocity, spin, there } = &turning;
         let [Some(a), Some(b)] = [p, q].map(parry::convert_body) else { continue };
         let motion = Motion::free_flight(*start, *center, *velocity, *spin).expect("a motion");
-        let cast = MotionCast::new(p.along(&motion), q.at(*there)).expect("a cast");
+        let cast = MotionCast::new(p.with_motion(&motion), q.at(*there)).expect("a cast");
         let spin = Spin::new(start, *center, *velocity, *spin, there);
         let ((mine, ours), (other, theirs)) =
             clock.time_both(turn, || cast.first_contact(), || spin.cast(&a, &b));

@@ -140,7 +140,8 @@ impl Screw {
     pub fn judge(&self) -> Result<MotionOutcome, Objection> {
         let object = |what: &dyn std::fmt::Display| Objection(what.to_string());
         let [p, q] = &self.bodies;
-        let cast = MotionCast::new(p.along(&self.motions[0]), q.along(&self.motions[1]));
+        let cast =
+            MotionCast::new(p.with_motion(&self.motions[0]), q.with_motion(&self.motions[1]));
         let cast = cast.map_err(|e| object(&e))?;
         let outcome = cast.first_contact().map_err(|e| object(&e))?;
         let proven = cast.verify(outcome.proof()).map_err(|e| object(&e))?;

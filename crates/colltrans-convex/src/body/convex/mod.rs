@@ -283,7 +283,7 @@ impl ConvexPolyhedron {
     }
 
     /// Finds the edge of `vertex` that is steepest along `direction`, as a position among its neighbours. The vertex
-    /// must have more than [`FAN`] neighbours.
+    /// must have more than [`MAX_SCANNED_NEIGHBOURS`] neighbours.
     pub(crate) fn steepest_edge_position(&self, vertex: u32, direction: DVec3) -> usize {
         self.support.fan_of_vertex(vertex).steepest_edge_position(
             &self.vertices,

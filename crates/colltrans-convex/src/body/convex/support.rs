@@ -595,7 +595,7 @@ fn steepest_neighbour(
     (best, gain)
 }
 
-/// Builds the fans of all vertices with more than [`FAN`] neighbours.
+/// Builds the fans of all vertices with more than [`MAX_SCANNED_NEIGHBOURS`] neighbours.
 fn build_fans(vertices: &[DVec3], topology: &Topology) -> Vec<Fan> {
     (0..topology.vertex_count() as u32)
         .filter(|&v| topology.neighbours(v).len() > MAX_SCANNED_NEIGHBOURS)
@@ -603,7 +603,7 @@ fn build_fans(vertices: &[DVec3], topology: &Topology) -> Vec<Fan> {
         .collect()
 }
 
-/// Builds the rings of all faces with more than [`FAN`] corners, followed by the rings adjacent to such faces that
+/// Builds the rings of all faces with more than [`MAX_SCANNED_NEIGHBOURS`] corners, followed by the rings adjacent to such faces that
 /// have a vertex outside them.
 fn build_rings(vertices: &[DVec3], topology: &Topology) -> Vec<Ring> {
     let large_faces = || {

@@ -8,8 +8,8 @@
 //! - Upper bound: a point `c` of `M` with `|c - s d| <= g` proves that the crossing is at most `s`.
 //! - No crossing: a plane with `n.d = 0` and `h > g`.
 //!
-//! [`travel`] is Newton's method for `f(s) = g` from below. Each sample at `s` finds the point of `M` nearest
-//! to `s d` and a plane between them. [`shadow`] computes the distance of the whole line from `M`. Rounding
+//! [`bound_crossing`] is Newton's method for `f(s) = g` from below. Each sample at `s` finds the point of `M` nearest
+//! to `s d` and a plane between them. [`distance_to_line`] computes the distance of the whole line from `M`. Rounding
 //! errors are analysed in `docs/theory/minimum-gap.md`.
 
 pub(crate) mod convex;

@@ -24,7 +24,7 @@ pub(super) struct PairFilter<'a> {
     boxes: Vec<Aabb>,
     /// The planes of nodes whose facets lie in one plane with the same orientation.
     planes: Vec<Option<FacetPlane>>,
-    /// Vertices common to all facets of a node, followed by [`NONE`].
+    /// Vertices common to all facets of a node, followed by [`NO_NEIGHBOUR`].
     shared_vertices: Vec<[u32; 3]>,
 }
 
@@ -174,7 +174,7 @@ impl<'a> PairFilter<'a> {
     }
 }
 
-/// Returns the vertices that both lists contain, in increasing order, followed by [`NONE`].
+/// Returns the vertices that both lists contain, in increasing order, followed by [`NO_NEIGHBOUR`].
 fn common_vertices(a: [u32; 3], b: [u32; 3]) -> [u32; 3] {
     let mut both = a.map(|v| if b.contains(&v) { v } else { NO_NEIGHBOUR });
     both.sort_unstable();

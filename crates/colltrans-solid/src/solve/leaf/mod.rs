@@ -2,7 +2,7 @@
 //!
 //! - `f` is a front facet of the moving body: its shadow is counter-clockwise. `g` is a back facet of the fixed body.
 //!   Its corners are listed in reverse, so that its shadow is counter-clockwise as well. A facet of an open shell is
-//!   both a front and a back facet, unless it is [edge-on](super::rim).
+//!   both a front and a back facet, unless it is [edge-on](super::edge_on).
 //! - The interiors of the shadows overlap unless a side of one separates them. Over the common shadow the gap `h_g -
 //!   h_f` is linear. Corners of the common shadow are corners of `f` under `g`, corners of `g` over `f`, and crossings
 //!   of sides.

@@ -104,7 +104,8 @@ fn check_first_contact(
     tally: &mut Tally,
 ) -> Result<(), Objection> {
     let [Some(moving), Some(fixed)] = judge.spins.each_ref().map(motion) else { return Ok(()) };
-    let cast = MotionCast::new(judge.bodies[0].along(&moving), judge.bodies[1].along(&fixed));
+    let cast =
+        MotionCast::new(judge.bodies[0].with_motion(&moving), judge.bodies[1].with_motion(&fixed));
     let kept = cast.and_then(|cast| {
         if judge.min_gap < 0.0 {
             cast.with_tolerance(-judge.min_gap)

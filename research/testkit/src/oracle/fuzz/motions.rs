@@ -39,7 +39,7 @@ pub fn motion(bytes: &[u8]) {
         Motion::from_arm_and_axis(spin.start, spin.arm, spin.axis, spin.angle, spin.way)
     };
     let (Ok(a), Ok(b)) = (spun(&moving), spun(&fixed)) else { return };
-    let cast = MotionCast::new(bodies.moving.along(&a), bodies.fixed.along(&b));
+    let cast = MotionCast::new(bodies.moving.with_motion(&a), bodies.fixed.with_motion(&b));
     let (kind, length) = (reader.byte(), reader.number().abs() / 64.0);
     let kept = cast.and_then(|cast| match kind % 3 {
         0 => Ok(cast),

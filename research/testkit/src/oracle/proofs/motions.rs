@@ -118,7 +118,7 @@ fn base(seed: u64) -> Option<String> {
     let random = &mut Random::stream(seed, &[0x0710_7104]);
     let (p, q) = (body(random), body(random));
     let [a, b] = motions(random)?;
-    let cast = MotionCast::new(p.along(&a), q.along(&b)).ok()?;
+    let cast = MotionCast::new(p.with_motion(&a), q.with_motion(&b)).ok()?;
     let length = 10.0_f64.powf(random.range(-6.0, -0.5));
     let cast = match random.index(4) {
         0 => cast.with_min_gap(length),

@@ -2,7 +2,7 @@
 //!
 //! The distance of the surfaces is computed in rational arithmetic at both bounds, at the start and on the way.
 //! To check that nothing is nearer before, each pair of facets is cast as two flat convex bodies, and the casts
-//! are judged by [`min_gap`](crate::oracle::keep).
+//! are judged by [`min_gap`](crate::oracle::min_gap).
 
 use colltrans::solid::{SolidCast, SolidCertificate};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Solid};

@@ -125,7 +125,8 @@ impl Turning {
         self.how_far(&cast, &plain)?;
         if let Some([p, q]) = &self.convex {
             let [a, b] = &self.motions;
-            let cast = MotionCast::new(p.along(a), q.along(b)).map_err(|e| e.to_string())?;
+            let cast =
+                MotionCast::new(p.with_motion(a), q.with_motion(b)).map_err(|e| e.to_string())?;
             let found = cast.first_contact().map_err(|e| e.to_string())?;
             check_agreement(time_bounds(&found), claimed, AGREEMENT)
                 .map_err(|e| format!("convex: {e}"))?;
@@ -166,7 +167,8 @@ impl Turning {
         }
         let Some([p, q]) = &self.convex else { return Ok(()) };
         let [a, b] = &self.motions;
-        let convex = MotionCast::new(p.along(a), q.along(b)).and_then(|cast| cast.clearance());
+        let convex =
+            MotionCast::new(p.with_motion(a), q.with_motion(b)).and_then(|cast| cast.clearance());
         match convex.map_err(|e| format!("clearance, convex: {e}"))? {
             MotionClearance::Blocked { contact, .. } => {
                 check_agreement(contact.time.bounds(), place.bounds(), AGREEMENT)

@@ -145,7 +145,7 @@ class Lines:
 
     def clearance(self) -> list[str]:
         if self.one_in(8):
-            scene = [self.mesh(True), "--among", "scene.jsonl", self.mesh(True)]
+            scene = [self.mesh(True), "--scene", "scene.jsonl", self.mesh(True)]
             return [*scene, *self.way(), *self.some((0.6, "--moving-pose=", self.pose), *self.outputs())]
         of_parts = self.some((0.3, "--tolerance=", self.length), (0.25, "--ignore-start-overlaps"))
         sides = self.sides(0.6)
@@ -177,7 +177,7 @@ class Lines:
 
     def distance(self) -> list[str]:
         if self.one_in(8):
-            return [self.mesh(True), "--among", "scene.jsonl", *self.some((0.6, "--moving-pose=", self.pose))]
+            return [self.mesh(True), "--scene", "scene.jsonl", *self.some((0.6, "--moving-pose=", self.pose))]
         sides = [side for side in self.sides(0.4) if side != "--from"]
         return [*sides, *self.some((0.1, "--hull")), *self.asked()]
 

@@ -97,7 +97,7 @@ def test_answers_and_their_proofs(cli: Path, tmp_path: Path, words: list[str]) -
     conform("verified", ask(cli, ["verify", str(proof)]))
 
 
-SCENE = ["--among", "plate.off", "scene.jsonl", "--moving-pose"]
+SCENE = ["--scene", "plate.off", "scene.jsonl", "--moving-pose"]
 
 
 @pytest.mark.parametrize(

@@ -156,7 +156,7 @@ pub(crate) struct ClearanceArguments {
     from: Vec<PathBuf>,
     /// The scene: meshes and files of obstacles (.jsonl); finds the first obstacle in the way
     #[arg(long, num_args = 1.., value_name = "SCENE", conflicts_with_all = ["from", "picture", "fixed_pose", "fixed_rpy", "fixed_scale"])]
-    pub(crate) among: Vec<PathBuf>,
+    pub(crate) scene: Vec<PathBuf>,
     /// Parts: permitted overlap, in the unit of the meshes [default: from the precision of the files]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) tolerance: Option<f64>,
@@ -236,7 +236,7 @@ pub(crate) enum BodyMode {
 }
 
 impl<'a> InputPair<'a> {
-    /// Returns the files of a command line. `has_scene` states whether the command also has `--among`, which the
+    /// Returns the files of a command line. `has_scene` states whether the command also has `--scene`, which the
     /// messages then suggest.
     ///
     /// # Errors
@@ -249,7 +249,7 @@ impl<'a> InputPair<'a> {
     ) -> Result<Self, Failure> {
         if let Some(list) = meshes.iter().chain(from).find(|file| is_obstacle_list(file)) {
             let list = list.display();
-            let obstacles = if has_scene { "give files of obstacles to --among, " } else { "" };
+            let obstacles = if has_scene { "give files of obstacles to --scene, " } else { "" };
             let message = format!(
                 "{list} is not a mesh; {obstacles}run `colltrans batch` for files of queries"
             );
@@ -269,8 +269,8 @@ impl<'a> InputPair<'a> {
 /// Returns the error message for a number of meshes other than two.
 fn mesh_count_message(meshes: &[PathBuf], has_scene: bool) -> String {
     if meshes.len() < 2 {
-        let or_among = if has_scene { " or a scene with --among" } else { "" };
-        return format!("one mesh given; add the fixed mesh, fixed meshes with --from{or_among}");
+        let or_scene = if has_scene { " or a scene with --scene" } else { "" };
+        return format!("one mesh given; add the fixed mesh, fixed meshes with --from{or_scene}");
     }
     let [first, others] = [&meshes[..1], &meshes[1..]].map(|files| {
         files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(" ")
@@ -278,7 +278,7 @@ fn mesh_count_message(meshes: &[PathBuf], has_scene: bool) -> String {
     let count = meshes.len();
     let as_one_body = format!("`{first} --from {others}` takes the others as one body");
     if has_scene {
-        let as_scene = format!("`{first} --among {others}` takes them as a scene");
+        let as_scene = format!("`{first} --scene {others}` takes them as a scene");
         return format!("{count} meshes given, expected two; {as_scene}, {as_one_body}");
     }
     format!("{count} meshes given, expected two; {as_one_body}")
@@ -287,13 +287,13 @@ fn mesh_count_message(meshes: &[PathBuf], has_scene: bool) -> String {
 /// Returns the moving mesh of a query with a scene.
 ///
 /// # Errors
-/// There are several meshes before `--among`.
+/// There are several meshes before `--scene`.
 fn single_mesh(meshes: &[PathBuf]) -> Result<&PathBuf, Failure> {
     match meshes {
         [mesh] => Ok(mesh),
         _ => Err(Failure::new(
             Code::Usage,
-            "give one mesh before --among, and the files of the scene after it",
+            "give one mesh before --scene, and the files of the scene after it",
         )),
     }
 }

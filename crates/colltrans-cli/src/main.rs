@@ -4,7 +4,7 @@
 //! - [`args`] parses the command line.
 //! - [`load`] reads mesh files as convex bodies ([`body`]) or as parts ([`solid`]).
 //! - A question calls the library: [`cast`], [`clearance`], [`distance`], [`directions`], [`motion`],
-//!   [`path`], and [`among`] for one body and a scene.
+//!   [`path`], and [`scene`] for one body and a scene.
 //! - [`driver`] prints the answer as JSON ([`record`]) or as text ([`report`], [`numbers`]), then writes its
 //!   proof and its [`picture`]. [`case`] saves a query that does not converge.
 //!
@@ -15,7 +15,6 @@
 //! writes a file completely or not at all. [`terminal`] escapes control characters in names. [`progress`]
 //! draws bars.
 
-mod among;
 mod args;
 mod assembly;
 mod batch;
@@ -39,6 +38,7 @@ mod progress;
 mod record;
 mod replay;
 mod report;
+mod scene;
 mod setup;
 mod solid;
 mod streams;
@@ -66,8 +66,8 @@ fn main() -> ExitCode {
     };
     let result = match arguments.command {
         Command::Cast(arguments) => cast::run(&arguments),
-        Command::Clearance(arguments) if arguments.among.is_empty() => clearance::run(&arguments),
-        Command::Clearance(arguments) => among::answer_clearance(&arguments),
+        Command::Clearance(arguments) if arguments.scene.is_empty() => clearance::run(&arguments),
+        Command::Clearance(arguments) => scene::answer_clearance(&arguments),
         Command::Directions(arguments) => directions::run(&arguments),
         Command::Distance(arguments) => answer_pair(&arguments, PairQuestion::Distance),
         Command::Depth(arguments) => answer_pair(&arguments, PairQuestion::Depth),
@@ -93,10 +93,10 @@ fn main() -> ExitCode {
 
 /// Answers a question about two bodies without a direction, or about a body and a scene if there is one.
 fn answer_pair(arguments: &PlacedArguments, question: PairQuestion) -> Result<(), Failure> {
-    if arguments.among.is_empty() {
+    if arguments.scene.is_empty() {
         distance::run(arguments, question)
     } else {
-        among::answer_placed(arguments, question)
+        scene::answer_placed(arguments, question)
     }
 }
 
@@ -134,7 +134,7 @@ fn usage_tip(error: &clap::Error) -> Option<String> {
     }
     let Some(long) = unknown.strip_prefix("--") else {
         let is_mesh = colltrans_mesh::Format::from_path(Path::new(unknown)).is_ok();
-        let tip = "`colltrans clearance MOVING --among MESH...` takes several meshes as a scene";
+        let tip = "`colltrans clearance MOVING --scene MESH...` takes several meshes as a scene";
         return is_mesh.then(|| tip.to_owned());
     };
     let has_option =

@@ -21,7 +21,7 @@ macro_rules! proven {
         impl $class {
             /// Returns the proof with everything that it refers to, as text.
             ///
-            /// The text is a file of ``--save-proof`` with ``--among``, which ``colltrans verify`` and
+            /// The text is a file of ``--save-proof`` with ``--scene``, which ``colltrans verify`` and
             /// ``python -m colltrans.check`` check. The query runs again to build it, without the limit
             /// ``before``. In the file the obstacles are numbered from 0 by their position, without ignored
             /// ones.

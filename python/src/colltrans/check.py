@@ -2332,7 +2332,7 @@ def motion(file: File, movers: list[Any], asked: Any, proof: Any, report: Report
         reached = chain(span, read)
     meet = "meet" if min_gap == 0 else f"are as near as {float(min_gap)!r}"
     if min_gap < 0:
-        meet = f"overlap by more than {float(-keep)!r}"
+        meet = f"overlap by more than {float(-min_gap)!r}"
     if any(claimed):
         told = "throughout the motion" if reached == 1 else f"up to the time {float(reached)!r}"
         report.holds.append(f"the bodies never {meet} {told}")

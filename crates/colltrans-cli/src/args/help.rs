@@ -263,7 +263,7 @@ Examples:
   Parts that are pressed into each other at the start, with a picture:
     colltrans clearance pin.stl block.stl --direction z --ignore-start-overlaps --picture pin.svg
   Which body of a scene does it meet first?
-    colltrans clearance hand.stl --among table.stl scene.jsonl --direction -z
+    colltrans clearance hand.stl --scene table.stl scene.jsonl --direction -z
 
 `colltrans help files`: formats, units, poses, bodies, exit codes; `colltrans help json`: fields.";
 
@@ -377,7 +377,7 @@ Examples:
     colltrans distance bolt.stl nut.stl --from plate.stl frame.stl --picture near.svg \\
       --save-proof near.json
   Which body of a scene is nearest?
-    colltrans distance hand.stl --among table.stl scene.jsonl
+    colltrans distance hand.stl --scene table.stl scene.jsonl
 
 `colltrans help files`: formats, units, poses, scenes, exit codes; `colltrans help json`: fields.";
 
@@ -404,7 +404,7 @@ Examples:
   Does a part min_gap a gap of 0.5 to its housing?
     colltrans within shaft.stl --from housing.stl --length 0.5
   Which bodies of a scene are closer than 0.1?
-    colltrans within hand.stl --among scene.jsonl --length 0.1
+    colltrans within hand.stl --scene scene.jsonl --length 0.1
 
 `colltrans help files`: formats, units, poses, scenes, exit codes; `colltrans help json`: fields.";
 

@@ -20,7 +20,7 @@ pub(crate) struct PlacedArguments {
     from: Vec<PathBuf>,
     /// The scene, for distance and within: meshes and files of obstacles (.jsonl)
     #[arg(long, num_args = 1.., value_name = "SCENE", conflicts_with_all = ["from", "picture", "fixed_pose", "fixed_rpy", "fixed_scale"])]
-    pub(crate) among: Vec<PathBuf>,
+    pub(crate) scene: Vec<PathBuf>,
     /// Print the answer as one JSON object
     #[arg(long)]
     pub(crate) json: bool,

@@ -1,6 +1,5 @@
 //! Runs the program as a user does.
 
-mod among;
 mod assembly;
 mod batch;
 mod cast;
@@ -17,6 +16,7 @@ mod picture;
 mod proof;
 mod readme;
 mod replay;
+mod scene;
 mod setup;
 mod step;
 mod support;

@@ -506,7 +506,7 @@ fn dent_within_the_convex_tolerance_is_reported() {
     std::fs::write(folder.path().join("scene.jsonl"), line).unwrap();
     let is_depth = |depth: &serde_json::Value| (depth.as_f64().unwrap() - 5e-6).abs() < 1e-12;
     let among = |command: &[&'static str], scene: &'static str| {
-        let words = [command, &["--moving-pose", "0,0,-3", "--json", "--among", scene]].concat();
+        let words = [command, &["--moving-pose", "0,0,-3", "--json", "--scene", scene]].concat();
         let output = run(folder.path(), &words);
         let note = "flat.off: convex only to within the tolerance";
         assert_eq!(stderr(&output).matches(note).count(), 1, "{}", stderr(&output));

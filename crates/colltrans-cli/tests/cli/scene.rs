@@ -1,4 +1,4 @@
-//! Queries with a scene (`--among`), their proofs, and invalid scenes.
+//! Queries with a scene (`--scene`), their proofs, and invalid scenes.
 
 use serde_json::{Value, json};
 
@@ -20,7 +20,7 @@ fn scene(folder: &std::path::Path) {
     std::fs::write(folder.join("scene.jsonl"), lines.join("\n")).unwrap();
 }
 
-const ABOVE: [&str; 5] = ["cube.off", "--among", "scene.jsonl", "--moving-pose", "24.25,0,4"];
+const ABOVE: [&str; 5] = ["cube.off", "--scene", "scene.jsonl", "--moving-pose", "24.25,0,4"];
 
 fn number(value: &Value, name: &str) -> f64 {
     value[name].as_f64().unwrap_or_else(|| panic!("{name}: {value}"))
@@ -53,14 +53,14 @@ fn scene_queries_find_nearest_near_and_first_obstacles() {
     assert_eq!(ask("clearance", &["--direction", "z"])["outcome"], "free");
     // The body that is not convex is named by its file, the points by their line.
     let place = |pose: &str| {
-        let asked = ["distance", "cube.off", "--among", "scene.jsonl", "--json", "--moving-pose"];
+        let asked = ["distance", "cube.off", "--scene", "scene.jsonl", "--json", "--moving-pose"];
         read(&answered(folder, &[&asked[..], &[pose]].concat()))
     };
     assert_eq!(place("0,40,5")["fixed"], "dent.off");
     assert_eq!(place("0,95,0")["fixed"], "line 23");
     // Meshes in place, and a file of obstacles.
     let meshes =
-        ["distance", "cube.off", "--among", "cube.off", "dent.off", "scene.jsonl", "--json"];
+        ["distance", "cube.off", "--scene", "cube.off", "dent.off", "scene.jsonl", "--json"];
     let told = read(&answered(folder, &[&meshes[..], &["--moving-pose", "2.2,0,3"]].concat()));
     assert_eq!((&told["fixed"], &told["obstacle"]), (&json!("cube 1"), &json!(3)));
     assert_eq!(told["obstacles"], 24);
@@ -82,7 +82,7 @@ fn scene_answers_are_printed_as_text() {
         let text = answered(folder, &[&[command], &ABOVE[..], more].concat());
         assert!(text.contains(said), "{said:?} is not in {text}");
     }
-    let inside = ["clearance", "cube.off", "--among", "scene.jsonl", "--direction", "x"];
+    let inside = ["clearance", "cube.off", "--scene", "scene.jsonl", "--direction", "x"];
     let text = answered(folder, &[&inside[..], &["--moving-pose", "4.5,0,0"]].concat());
     assert!(text.starts_with("overlapping") && text.contains("cube 2, number 2"), "{text}");
 }
@@ -92,7 +92,7 @@ fn scene_proofs_hold_in_both_checkers() {
     let folder = folder();
     let folder = folder.path();
     scene(folder);
-    let near_dent = ["cube.off", "--among", "scene.jsonl", "--moving-pose", "0.1,40,5"];
+    let near_dent = ["cube.off", "--scene", "scene.jsonl", "--moving-pose", "0.1,40,5"];
     for (command, bodies, more, said, code) in [
         ("distance", &ABOVE, &[][..], "of 22 obstacles, obstacle 12 is at most 3.0", 0),
         ("within", &ABOVE, &["--length", "3.2"], "2 (12, 13) are at most 3.2 away", 0),
@@ -127,7 +127,7 @@ fn invalid_scene_arguments_are_rejected() {
     let folder = folder.path();
     scene(folder);
     let among = |command: &'static str, more: &[&'static str]| {
-        [&[command, "cube.off", "--among", "scene.jsonl"], more].concat()
+        [&[command, "cube.off", "--scene", "scene.jsonl"], more].concat()
     };
     refused(folder, &among("depth", &[]), 2, &["a depth needs two bodies"]);
     refused(folder, &among("distance", &["--from", "cube.off"]), 2, &["--from"]);
@@ -135,14 +135,14 @@ fn invalid_scene_arguments_are_rejected() {
     refused(folder, &among("distance", &["--fixed-pose", "1,0,0"]), 2, &["--fixed-pose"]);
     refused(folder, &among("clearance", &["--directions", "-"]), 2, &["one --direction"]);
     let three = ["distance", "cube.off", "dent.off", "open.off"];
-    refused(folder, &three, 2, &["3 meshes given", "cube.off --among dent.off open.off", "--from"]);
-    let two = ["distance", "cube.off", "dent.off", "--among", "scene.jsonl"];
-    refused(folder, &two, 2, &["one mesh before --among"]);
+    refused(folder, &three, 2, &["3 meshes given", "cube.off --scene dent.off open.off", "--from"]);
+    let two = ["distance", "cube.off", "dent.off", "--scene", "scene.jsonl"];
+    refused(folder, &two, 2, &["one mesh before --scene"]);
     refused(
         folder,
         &["distance", "cube.off", "scene.jsonl"],
         2,
-        &["give files of obstacles to --among"],
+        &["give files of obstacles to --scene"],
     );
     // Commands without scenes do not mention them.
     for command in ["directions", "depth"] {
@@ -153,7 +153,7 @@ fn invalid_scene_arguments_are_rejected() {
             assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
             let said = stderr(&output);
             assert!(
-                !said.contains("--among") && said.contains("colltrans ") | said.contains("--from"),
+                !said.contains("--scene") && said.contains("colltrans ") | said.contains("--from"),
                 "{said}"
             );
         }
@@ -169,7 +169,7 @@ fn invalid_scene_arguments_are_rejected() {
         (r#"{"body":{"mesh":"cube.off"},"pose":{"rotation":[1,1,1,1]}}"#, "line 1: pose: "),
     ] {
         std::fs::write(folder.join("bad.jsonl"), line).unwrap();
-        refused(folder, &["distance", "cube.off", "--among", "bad.jsonl"], 3, &["bad.jsonl", said]);
+        refused(folder, &["distance", "cube.off", "--scene", "bad.jsonl"], 3, &["bad.jsonl", said]);
     }
 }
 
@@ -179,7 +179,7 @@ fn scene_pose_with_few_digits_is_normalised_with_a_note() {
     let folder = folder.path();
     let line = r#"{"body":{"mesh":"cube.off"},"pose":{"translation":[4,0,0],"rotation":[0,0,0.707,0.707]}}"#;
     std::fs::write(folder.join("scene.jsonl"), format!("\n{line}\n")).unwrap();
-    let output = run(folder, &["distance", "cube.off", "--among", "scene.jsonl"]);
+    let output = run(folder, &["distance", "cube.off", "--scene", "scene.jsonl"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let note = "note: scene.jsonl: line 2: pose: the quaternion has length 0.999849, not 1; it was normalised";
     assert!(stderr(&output).starts_with(note), "{}", stderr(&output));
@@ -194,7 +194,7 @@ fn unknown_options_suggest_their_command() {
     refused(folder, &two("distance", &["--min-gap", "0.5"]), 2, &min_gap);
     refused(folder, &two("cast", &["--length=3"]), 2, &["--length belongs to `colltrans within`"]);
     let third = two("cast", &["dent.off", "--direction", "x"]);
-    refused(folder, &third, 2, &["colltrans clearance MOVING --among"]);
+    refused(folder, &third, 2, &["colltrans clearance MOVING --scene"]);
     let unknown = stderr(&run(folder, &two("distance", &["--frm", "a"])));
     assert!(unknown.contains("similar argument exists: '--from'"), "{unknown}");
     refused(
@@ -220,7 +220,7 @@ fn forged_rounding_in_a_scene_proof_is_rejected() {
     let folder = folder.path();
     let behind = r#"{"body":{"mesh":"cube.off"},"pose":{"translation":[-1,0,0]}}"#;
     std::fs::write(folder.join("behind.jsonl"), behind).unwrap();
-    let ask = ["clearance", "cube.off", "--among", "behind.jsonl", "--direction", "1,0,0"];
+    let ask = ["clearance", "cube.off", "--scene", "behind.jsonl", "--direction", "1,0,0"];
     let mut proof = saved(folder, &ask);
     assert!(checked(folder, &proof).is_none_or(|code| code == 0));
     // The obstacle is moved ahead, and forged bounds claim that it is behind to within rounding.
@@ -239,7 +239,7 @@ fn convex_proof_of_a_nonconvex_body_is_rejected() {
     let folder = folder();
     let folder = folder.path();
     scene(folder);
-    let asked = ["distance", "cube.off", "--among", "scene.jsonl", "--moving-pose", "0,40,5"];
+    let asked = ["distance", "cube.off", "--scene", "scene.jsonl", "--moving-pose", "0,40,5"];
     let mut proof = saved(folder, &asked);
     // Convex combinations of vertices may lie outside of a body that is not convex.
     let pairs: Vec<Value> = (0..4).map(|k| json!({ "moving": k, "fixed": k })).collect();
@@ -253,11 +253,11 @@ fn convex_proof_of_a_nonconvex_body_is_rejected() {
     assert_eq!(run(folder, &["verify", "proof.json"]).status.code(), Some(6));
     let segment = r#"{"body":{"points":[[0,0,9],[1,0,9]]}}"#;
     std::fs::write(folder.join("segment.jsonl"), segment).unwrap();
-    let ask = ["distance", "dent.off", "--among", "segment.jsonl", "--save-proof", "proof.json"];
+    let ask = ["distance", "dent.off", "--scene", "segment.jsonl", "--save-proof", "proof.json"];
     answered(folder, &ask);
     answered(folder, &["verify", "proof.json"]);
-    answered(folder, &["within", "dent.off", "--among", "segment.jsonl", "--length", "20"]);
-    let ask = ["clearance", "dent.off", "--among", "segment.jsonl", "--direction", "0,0,1"];
+    answered(folder, &["within", "dent.off", "--scene", "segment.jsonl", "--length", "20"]);
+    let ask = ["clearance", "dent.off", "--scene", "segment.jsonl", "--direction", "0,0,1"];
     answered(folder, &[&ask[..], &["--save-proof", "proof.json"]].concat());
     answered(folder, &["verify", "proof.json"]);
 }
@@ -268,7 +268,7 @@ fn graze_tolerance_is_reported() {
     let folder = folder.path();
     let aside = r#"{"body":{"mesh":"cube.off"},"pose":{"translation":[3,0.75,0]}}"#;
     std::fs::write(folder.join("aside.jsonl"), aside).unwrap();
-    let ask = ["clearance", "cube.off", "--among", "aside.jsonl", "--direction", "1,0,0"];
+    let ask = ["clearance", "cube.off", "--scene", "aside.jsonl", "--direction", "1,0,0"];
     let graze = ["--graze-tolerance", "0.5", "--save-proof", "proof.json"];
     let text = answered(folder, &[&ask[..], &graze].concat());
     assert!(

@@ -1,4 +1,4 @@
-//! Queries of one body and a scene (`--among`): `distance` finds the nearest obstacle, `within` those closer than a length,
+//! Queries of one body and a scene (`--scene`): `distance` finds the nearest obstacle, `within` those closer than a length,
 //! `clearance` the first obstacle in the way.
 
 mod scene;
@@ -40,12 +40,12 @@ pub(crate) fn answer_placed(
     question: PairQuestion,
 ) -> Result<(), Failure> {
     if question == PairQuestion::Depth {
-        let why = "--among: a depth needs two bodies; `colltrans distance` reports an obstacle that is met";
+        let why = "--scene: a depth needs two bodies; `colltrans distance` reports an obstacle that is met";
         return Err(Failure::new(Code::Usage, why));
     }
     let request = SceneRequest {
         moving: arguments.moving_mesh()?,
-        scene: &arguments.among,
+        scene: &arguments.scene,
         pose: arguments.places.poses()?[0],
         options: ReadOptions {
             mode: arguments.body_mode()?,
@@ -57,23 +57,23 @@ pub(crate) fn answer_placed(
         save_proof: arguments.save_proof.as_ref(),
     };
     let (scene, targets) = request.load(&arguments.places)?;
-    let among = SceneQuery::new(scene.moving.body.at(request.pose), &scene.obstacles)?;
+    let query = SceneQuery::new(scene.moving.body.at(request.pose), &scene.obstacles)?;
     if let PairQuestion::Within(length) = question {
-        let mut record = SceneWithinRecord::from_nearby(&among.within(length)?, &among);
+        let mut record = SceneWithinRecord::from_nearby(&query.within(length)?, &query);
         for nearby in record.closer.iter_mut().flatten().chain(&mut record.undecided) {
             nearby.fixed = scene.name(nearby.obstacle);
             nearby.dent = scene.dent(nearby.obstacle);
         }
-        let prove = || ProofFile::of_within(&among, length).map(Some);
+        let prove = || ProofFile::of_within(&query, length).map(Some);
         let line = scene.line_of(record, None);
         return write_answer(targets, &line, |record| text::within_text(record, length), prove);
     }
     // The scene has a file, and each file at least one obstacle.
-    let found = among.nearest()?.ok_or(Failure::new(Code::Input, "the scene has no obstacles"))?;
+    let found = query.nearest()?.ok_or(Failure::new(Code::Input, "the scene has no obstacles"))?;
     let error = scene.length_error(request.pose, found.obstacle);
-    let mut record = NearestRecord::from_nearest(&found, &among);
+    let mut record = NearestRecord::from_nearest(&found, &query);
     record.fixed = scene.name(found.obstacle);
-    let prove = || ProofFile::of_nearest(&among);
+    let prove = || ProofFile::of_nearest(&query);
     let line = scene.line_of(record, Some(found.obstacle));
     write_answer(targets, &line, |record| text::nearest_text(record, error), prove)
 }
@@ -82,12 +82,12 @@ pub(crate) fn answer_placed(
 pub(crate) fn answer_clearance(arguments: &ClearanceArguments) -> Result<(), Failure> {
     let pair = &arguments.pair;
     let Some(direction) = pair.directions.direction else {
-        let why = "--among accepts one --direction; --directions needs two bodies";
+        let why = "--scene accepts one --direction; --directions needs two bodies";
         return Err(Failure::new(Code::Usage, why));
     };
     let request = SceneRequest {
         moving: arguments.moving_mesh()?,
-        scene: &arguments.among,
+        scene: &arguments.scene,
         pose: pair.places.poses()?[0],
         options: ReadOptions {
             mode: arguments.body_mode()?,
@@ -103,9 +103,9 @@ pub(crate) fn answer_clearance(arguments: &ClearanceArguments) -> Result<(), Fai
         None => scene.default_tolerance(request.pose, direction)?,
         given => given,
     };
-    let among = scene_query(&scene, &request, arguments, tolerance)?;
-    let found = among.clearance(direction)?;
-    let mut record = SceneClearanceRecord::from_clearance(&found, &among, direction);
+    let query = scene_query(&scene, &request, arguments, tolerance)?;
+    let found = query.clearance(direction)?;
+    let mut record = SceneClearanceRecord::from_clearance(&found, &query, direction);
     let obstacle = record.obstacle;
     (record.tolerance, record.fixed) = (tolerance, obstacle.and_then(|id| scene.name(id)));
     let error = obstacle.map_or(0.0, |obstacle| scene.length_error(request.pose, obstacle));
@@ -114,7 +114,7 @@ pub(crate) fn answer_clearance(arguments: &ClearanceArguments) -> Result<(), Fai
     let answer_text = |record: &_| {
         text::clearance_text(record, direction, error, is_default) + &text::graze_line(graze)
     };
-    let prove = || ProofFile::of_scene_clearance(&among, direction).map(Some);
+    let prove = || ProofFile::of_scene_clearance(&query, direction).map(Some);
     write_answer(targets, &scene.line_of(record, obstacle), answer_text, prove)
 }
 
@@ -136,8 +136,8 @@ fn scene_query<'a>(
         .with_tolerance(tolerance)
         .with_start_overlap(start)
         .with_min_gap(pair.min_gap);
-    let among = SceneQuery::new(scene.moving.body.at(request.pose), &scene.obstacles)?;
-    Ok(among.with_options(options)?.with_solid_options(of_solids))
+    let query = SceneQuery::new(scene.moving.body.at(request.pose), &scene.obstacles)?;
+    Ok(query.with_options(options)?.with_solid_options(of_solids))
 }
 
 impl<'a> SceneRequest<'a> {

@@ -335,7 +335,7 @@ def test_solids_in_bulk_equal_single_answers(tmp_path: Path, capsys: Any) -> Non
     assert told["distance"][0].as_py() == plain.distance[0]
     assert told["distance"][1].as_py() == alone.distance[1]
     assert told["outcome"].to_pylist() == ["blocked", "blocked", "error"]
-    assert {"shrunk_distance_lower", "translation_upper"} <= set(told.column_names)
+    assert {"offset_distance_lower", "translation_upper"} <= set(told.column_names)
     assert main(words) == 2
     assert "unknown question 'range' of solids" in capsys.readouterr().err
 

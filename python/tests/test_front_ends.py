@@ -97,7 +97,7 @@ def test_the_same_file_gives_the_same_body(
     assert query.tolerance == there["tolerance"] == seen["tolerance"]
     assert here.distance == there["distance"] == seen["distance"]
     assert found.translation == there["translation"] == seen["translation"]
-    assert found.shrunk_distance == there["shrunk_distance"] == seen["shrunk_distance"]
+    assert found.offset_distance == there["offset_distance"] == seen["offset_distance"]
     assert query.exit() == there["exit"] == seen["exit"]
     assert np.array_equal(found.normal, there["normal"])
     assert found.normal.tolist() == seen["normal"]

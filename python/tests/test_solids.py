@@ -71,8 +71,8 @@ def test_answers_equal_those_of_the_command_line(batch: Batch, bolt: Solid, plat
                 assert (line["outcome"], line["distance"]) == ("blocked", distance)
                 assert line["translation"] == contact.translation
                 assert line["translation_bounds"] == list(contact.translation_bounds)
-                assert line["shrunk_distance"] == contact.shrunk_distance
-                assert line["shrunk_distance_bounds"] == list(contact.shrunk_distance_bounds)
+                assert line["offset_distance"] == contact.offset_distance
+                assert line["offset_distance_bounds"] == list(contact.offset_distance_bounds)
                 for side in ("moving", "fixed"):
                     feature = getattr(contact, f"{side}_feature")
                     known = {"kind": feature.kind, "vertices": feature.vertices.tolist()}
@@ -95,7 +95,7 @@ def test_proofs_are_checked_and_saved(bolt: Solid, plate: Solid) -> None:
     again = SolidCertificate.from_json(proof.to_json())
     assert query.verify(again) == query.verify(proof) < 1e-11
     # The values of the shrunk bodies: the tolerance follows the single precision of the file.
-    assert 7 + query.tolerance - 1e-11 < proof.lower <= answer.contact.shrunk_distance
+    assert 7 + query.tolerance - 1e-11 < proof.lower <= answer.contact.offset_distance
     nearer = SolidCast(bolt, plate, [0, 0, -1], moving_pose=[0, 0, 6])
     with pytest.raises(CertificateError):
         nearer.verify(proof)

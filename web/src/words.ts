@@ -134,7 +134,7 @@ function solid(answer: PageSolid, state: State): Said {
       rows: [...(depth === null ? [] : [["depth", short(depth, 9)] as [string, string]]), ...exit, tolerance, ...open],
     };
   }
-  const shrunk = record.shrunk_distance_bounds?.[0] ?? first.t;
+  const shrunk = record.offset_distance_bounds?.[0] ?? first.t;
   return {
     kind: "stop",
     headline: `Blocked at t = ${within(Math.max(first.t, 0), shrunk)}`,
@@ -143,8 +143,8 @@ function solid(answer: PageSolid, state: State): Said {
       ["safe for t up to", String(record.distance)],
       ["t, nominal bodies", short(first.t, 12)],
       ["proven", proven(record.translation_bounds)],
-      ["t, bodies shrunk", short(record.shrunk_distance ?? first.t, 12)],
-      ["proven", proven(record.shrunk_distance_bounds)],
+      ["t, bodies shrunk", short(record.offset_distance ?? first.t, 12)],
+      ["proven", proven(record.offset_distance_bounds)],
       ...exit,
       ["normal n", shown(first.normal)],
       ["point", first.point.map((x) => short(x, 7)).join(", ")],

@@ -109,7 +109,7 @@ pub fn part_travel_json(bodies: &Bodies, part: usize, d: DVec3, room: &PartTrave
         Fit::Tolerance(_) | Fit::Chords { .. } => {
             object["translation"] = json!(stop.translation.value);
             object["translation_bounds"] = json!(stop.translation.bounds());
-            "shrunk_distance"
+            "offset_distance"
         }
         Fit::MinGap(_) => "kept_distance",
     };

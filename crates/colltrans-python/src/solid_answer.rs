@@ -34,9 +34,9 @@ getters!(SolidContact, |it| {
     /// shrunk bodies if the nominal faces pass each other.
     translation_bounds: (f64, f64) = it.contact.translation.bounds().into();
     /// float: The free travel of the bodies shrunk by half the tolerance each, in multiples of the direction.
-    shrunk_distance: f64 = it.contact.offset_distance.value;
+    offset_distance: f64 = it.contact.offset_distance.value;
     /// tuple of (float, float): Proven bounds of the free travel of the shrunk bodies.
-    shrunk_distance_bounds: (f64, f64) = it.contact.offset_distance.bounds().into();
+    offset_distance_bounds: (f64, f64) = it.contact.offset_distance.bounds().into();
     /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
     normal(py): Vector<'py> = row(py, it.contact.normal);
     /// ndarray of shape (3,): The contact point on the fixed body, in the world.

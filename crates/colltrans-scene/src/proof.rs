@@ -102,7 +102,7 @@ impl ClearanceProof {
             None | Some(ByKind::Convex(Clearance::Free(_))) => f64::INFINITY,
             Some(ByKind::Convex(Clearance::Blocked { contact, .. })) => contact.certificate.upper,
             Some(ByKind::Convex(Clearance::Overlapping(_))) => 0.0,
-            Some(ByKind::Solid(proof)) => proof.stop.map_or(0.0, |stop| stop.shrunk_distance),
+            Some(ByKind::Solid(proof)) => proof.stop.map_or(0.0, |stop| stop.offset_distance),
         }
     }
 }

@@ -195,7 +195,7 @@ impl SceneQuery<'_> {
                 if overlaps && certificate.search_aim(cast.options()).is_none() {
                     return Ok([f64::NEG_INFINITY; 2]);
                 }
-                let upper = certificate.stop.map_or(f64::INFINITY, |stop| stop.shrunk_distance);
+                let upper = certificate.stop.map_or(f64::INFINITY, |stop| stop.offset_distance);
                 Ok([certificate.lower, upper])
             }
             _ => Err(CertificateError::StartClaim),

@@ -84,7 +84,7 @@ fn solid_contact_reports_features_and_bounds() {
     let number = |value: &Value| value.as_f64().unwrap();
     let (t, distance) = (number(&record["translation"]), number(&record["distance"]));
     assert!(distance <= t && t - distance < 1e-11, "{answer}");
-    for name in ["translation", "shrunk_distance", "exit"] {
+    for name in ["translation", "offset_distance", "exit"] {
         let [lower, upper] = [0, 1].map(|k| number(&record[format!("{name}_bounds")][k]));
         let value = number(&record[name]);
         assert!(lower <= value && value <= upper, "{name}: {answer}");

@@ -28,10 +28,10 @@ class SolidColumns(RowColumns[SolidBlocked | SolidFree | SolidOverlapping]):
         the direction.
     translation_lower, translation_upper : ndarray of shape (N,)
         Proven bounds of the translation.
-    shrunk_distance : ndarray of shape (N,)
+    offset_distance : ndarray of shape (N,)
         The free travel of the bodies shrunk by half the tolerance each.
-    shrunk_distance_lower, shrunk_distance_upper : ndarray of shape (N,)
-        Proven bounds of ``shrunk_distance``.
+    offset_distance_lower, offset_distance_upper : ndarray of shape (N,)
+        Proven bounds of ``offset_distance``.
     least_tolerance : ndarray of shape (N,)
         The smallest tolerance at which overlapping bodies would not overlap, a length.
     normal : ndarray of shape (N, 3)
@@ -44,9 +44,9 @@ class SolidColumns(RowColumns[SolidBlocked | SolidFree | SolidOverlapping]):
     translation: Floats
     translation_lower: Floats
     translation_upper: Floats
-    shrunk_distance: Floats
-    shrunk_distance_lower: Floats
-    shrunk_distance_upper: Floats
+    offset_distance: Floats
+    offset_distance_lower: Floats
+    offset_distance_upper: Floats
     least_tolerance: Floats
     normal: Floats
     point: Floats
@@ -59,16 +59,16 @@ class SolidColumns(RowColumns[SolidBlocked | SolidFree | SolidOverlapping]):
         match answer:
             case SolidBlocked(distance=distance, contact=contact):
                 lower, upper = contact.translation_bounds
-                shrunk_lower, shrunk_upper = contact.shrunk_distance_bounds
+                shrunk_lower, shrunk_upper = contact.offset_distance_bounds
                 return {
                     "outcome": "blocked",
                     "distance": distance,
                     "translation": contact.translation,
                     "translation_lower": lower,
                     "translation_upper": upper,
-                    "shrunk_distance": contact.shrunk_distance,
-                    "shrunk_distance_lower": shrunk_lower,
-                    "shrunk_distance_upper": shrunk_upper,
+                    "offset_distance": contact.offset_distance,
+                    "offset_distance_lower": shrunk_lower,
+                    "offset_distance_upper": shrunk_upper,
                     "normal": contact.normal,
                     "point": contact.point,
                 }

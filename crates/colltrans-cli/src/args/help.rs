@@ -249,7 +249,7 @@ Answers for convex bodies:
 Answers for parts:
   free         nothing blocks the body
   blocked      `distance` is safe to move by, perhaps 0. The faces that stop the nominal bodies meet
-               within `translation_bounds`, the offset bodies at `shrunk_distance`
+               within `translation_bounds`, the offset bodies at `offset_distance`
   overlapping  the bodies overlap now by more than the tolerance; `least_tolerance` would suffice
 `exit` is where the bodies meet last. Beyond the upper one of `exit_bounds` they never meet.
 
@@ -465,8 +465,8 @@ bounds and rounding are multiples of the direction; other lengths are in the uni
   back on      of a clearance, overlapping: travel backwards or forwards after which they are free
   translation  first contact; negative: behind, or overlapping; of parts: of the nominal surfaces
   exit         last contact; behind: normal, point and features are those there
-  shrunk_distance  of parts, blocked: travel of the bodies offset by half the tolerance each
-  translation_bounds exit_bounds shrunk_distance_bounds
+  offset_distance  of parts, blocked: travel of the bodies offset by half the tolerance each
+  translation_bounds exit_bounds offset_distance_bounds
                proven [lower, upper]; null if unknown, for example of bodies that slide and may not
                touch. Of parts whose two faces pass each other, the upper bound of translation holds
                for the offset bodies
@@ -497,7 +497,7 @@ const JSON_ASSEMBLY: &str = r#"Answer of assembly:
    "suggestions": [{"parts", "role", "tolerance", "why"}], "pairs": [{"parts", "role", "words"}],
    "liaisons": [{"parts": [a, b], "area", "area_bounds", "center"}],
    "rooms": [{"part", "direction", "outcome", "distance", "by", "point", "normal", "translation",
-     "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "kept_distance", ...)}],
+     "translation_bounds", "offset_distance", "offset_distance_bounds" (or "kept_distance", ...)}],
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
      "path": [{"parts", "direction", "travel", "turn": {"point", "axis", "turns", "pitch", "phase",
        "aside", "words", "proof": {"tolerance", "pairs"} or "not_proven"}}], "back", "within",

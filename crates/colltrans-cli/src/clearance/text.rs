@@ -68,7 +68,7 @@ pub(super) fn scan_line(line: &Line, direction: DVec3) -> String {
         let message = line.message.clone().unwrap_or_default();
         return join_columns(&direction, [outcome, message, String::new(), String::new()]);
     };
-    let shrunk = record.shrunk_distance_bounds.map(|[lower, _]| lower);
+    let shrunk = record.offset_distance_bounds.map(|[lower, _]| lower);
     let exit = record.exit_bounds.map(|[_, upper]| upper);
     let or_none = |t: Option<f64>| t.map_or_else(|| "-".into(), number);
     let [distance, shrunk, exit] = [record.distance, shrunk, exit].map(or_none);
@@ -90,7 +90,7 @@ fn push_contact(text: &mut String, answer: &Answer, direction: DVec3) {
         record.translation,
         record.translation_bounds,
         record.distance,
-        record.shrunk_distance_bounds,
+        record.offset_distance_bounds,
     ) {
         let remark = if value.abs() <= error { " (the parts touch)" } else { "" };
         let travel = safe_travel(value.max(0.0), error, [distance, shrunk], direction);

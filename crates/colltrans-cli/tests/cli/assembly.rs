@@ -98,8 +98,8 @@ fn free_travels_have_bounds_and_blockers() {
     let down = room("high", -1.0);
     assert_eq!((&down["outcome"], &down["by"]), (&"blocked".into(), &"low".into()));
     assert_eq!(down["distance"], 0.0);
-    let bounds: Vec<f64> = serde_json::from_value(down["shrunk_distance_bounds"].clone()).unwrap();
-    let shrunk = down["shrunk_distance"].as_f64().unwrap();
+    let bounds: Vec<f64> = serde_json::from_value(down["offset_distance_bounds"].clone()).unwrap();
+    let shrunk = down["offset_distance"].as_f64().unwrap();
     assert!(bounds[0] <= shrunk && shrunk <= bounds[1] && bounds[1] < 1e-4, "{down}");
     let encloses = |of: &serde_json::Value, name: &str, slack: f64| {
         let bounds: Vec<f64> =

@@ -200,7 +200,7 @@ fn help_topics_document_exit_codes_poses_and_fields() {
     for (words, parts) in [
         (&["help", "files"][..], &["Exit codes:", "qx,qy,qz,qw", "single precision", "STL"][..]),
         (&["files", "--help"], &["Exit codes:", "Manifest of an assembly", "--merge-tolerance"]),
-        (&["help", "json"], &["start_overlaps", "shrunk_distance", "EXCESS =", "liaisons"]),
+        (&["help", "json"], &["start_overlaps", "offset_distance", "EXCESS =", "liaisons"]),
         (&["cast", "--help"], &["Examples:", "x,y,z,qx,qy,qz,qw", "1e-5", "colltrans help files"]),
     ] {
         let text = help(words);

@@ -116,8 +116,8 @@ const BLOCKED_FIELDS: [&str; 12] = [
     "normal",
     "outcome",
     "point",
-    "shrunk_distance",
-    "shrunk_distance_bounds",
+    "offset_distance",
+    "offset_distance_bounds",
     "tolerance",
     "translation",
     "translation_bounds",
@@ -134,14 +134,14 @@ fn bolt_is_blocked_by_its_head() {
     assert!(distance <= 7.0 && distance > 7.0 - 1e-12, "safe to move by: {answer}");
     let tolerance = number(&answer, "tolerance");
     assert!(tolerance > 1e-7 && tolerance < 1e-5, "single precision: {answer}");
-    assert!((number(&answer, "shrunk_distance") - 7.0 - tolerance).abs() < 1e-9, "{answer}");
+    assert!((number(&answer, "offset_distance") - 7.0 - tolerance).abs() < 1e-9, "{answer}");
     // The top of the head leaves the underside of the plate after 12.
     for (name, right) in [("translation", 7.0), ("exit", 12.0)] {
         let [lower, upper] = bounds(&answer, name);
         assert!(lower <= right && right <= upper && upper - lower < 1e-11, "{name}: {answer}");
         assert!((number(&answer, name) - right).abs() < 1e-12, "{name}: {answer}");
     }
-    let [lower, upper] = bounds(&answer, "shrunk_distance");
+    let [lower, upper] = bounds(&answer, "offset_distance");
     assert!(lower <= 7.0 + tolerance && 7.0 + tolerance <= upper + 1e-12, "{answer}");
     assert_eq!(bounds(&answer, "translation")[0], distance);
     let features = &answer["features"];
@@ -234,7 +234,7 @@ fn start_overlaps_are_listed_by_file() {
     let (up, _) = ask(folder.path(), &format!("{alone} --tolerance 0.2501"));
     assert_eq!(up["outcome"], "free");
     let down = format!("{alone} --tolerance 0.2501").replace("direction z", "direction -z");
-    assert!(number(&ask(folder.path(), &down).0, "shrunk_distance") < 1e-3);
+    assert!(number(&ask(folder.path(), &down).0, "offset_distance") < 1e-3);
     let (ignored, _) = ask(folder.path(), &format!("{alone} --ignore-start-overlaps"));
     assert_eq!(ignored["outcome"], "free");
     assert_eq!(ignored["start_overlaps"][0]["fixed"], "table.off", "said all the same");
@@ -375,7 +375,7 @@ fn invalid_clearance_arguments_are_rejected() {
     refused(folder, &words.replace(" z", " 0,0,0"), 2, &["direction"]);
     refused(folder, &format!("{words} --picture a.png"), 2, &["a.svg"]);
     let help = stdout(&run(folder, "--help", &[]));
-    for part in ["Examples:", "in the unit", "shrunk_distance", "--open", "colltrans help json"] {
+    for part in ["Examples:", "in the unit", "offset_distance", "--open", "colltrans help json"] {
         assert!(help.contains(part), "{part:?} is not in {help}");
     }
 }

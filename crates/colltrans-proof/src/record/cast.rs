@@ -98,9 +98,9 @@ record! {
         /// Proven bounds of `translation`.
         pub translation_bounds: Option<[f64; 2]>,
         /// Travel of the bodies offset by half the tolerance each.
-        pub shrunk_distance: Option<f64>,
-        /// Proven bounds of `shrunk_distance`.
-        pub shrunk_distance_bounds: Option<[f64; 2]>,
+        pub offset_distance: Option<f64>,
+        /// Proven bounds of `offset_distance`.
+        pub offset_distance_bounds: Option<[f64; 2]>,
         /// Last contact.
         pub exit: Option<f64>,
         /// Proven bounds of `exit`. Beyond the upper one the bodies never meet.
@@ -265,8 +265,8 @@ impl SolidClearanceRecord {
                 distance: Some(*distance),
                 translation: Some(contact.translation.value),
                 translation_bounds: Some(contact.translation.bounds()),
-                shrunk_distance: Some(contact.offset_distance.value),
-                shrunk_distance_bounds: Some(contact.offset_distance.bounds()),
+                offset_distance: Some(contact.offset_distance.value),
+                offset_distance_bounds: Some(contact.offset_distance.bounds()),
                 normal: Some(without_negative_zeros(contact.normal)),
                 point: Some(without_negative_zeros(contact.point_on_fixed)),
                 features: Some(FeaturesRecord::of_bodies(

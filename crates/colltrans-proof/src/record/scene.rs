@@ -74,9 +74,9 @@ record! {
         /// Proven bounds of `translation`.
         pub translation_bounds: Option<[f64; 2]>,
         /// For solids, travel of the bodies offset by half the tolerance each.
-        pub shrunk_distance: Option<f64>,
-        /// Proven bounds of `shrunk_distance`.
-        pub shrunk_distance_bounds: Option<[f64; 2]>,
+        pub offset_distance: Option<f64>,
+        /// Proven bounds of `offset_distance`.
+        pub offset_distance_bounds: Option<[f64; 2]>,
         /// Last contact, for an overlap with a convex obstacle.
         pub exit: Option<f64>,
         /// Proven bounds of `exit`. Beyond the upper one the bodies never meet.
@@ -237,8 +237,8 @@ impl From<SolidClearanceRecord> for SceneClearanceRecord {
             outcome: of.outcome,
             translation: of.translation,
             translation_bounds: of.translation_bounds,
-            shrunk_distance: of.shrunk_distance,
-            shrunk_distance_bounds: of.shrunk_distance_bounds,
+            offset_distance: of.offset_distance,
+            offset_distance_bounds: of.offset_distance_bounds,
             normal: of.normal,
             point: of.point,
             tolerance: of.tolerance,

@@ -119,8 +119,8 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
             _ => answer_from_search(self, scene, found.as_ref(), steps),
         };
         if let Clearance::Blocked { contact, .. } = &answer {
-            let shrunk_distance = contact.offset_distance.value;
-            certificate.stop = Some(StopProof { shrunk_distance, triangles: contact.triangles });
+            let offset_distance = contact.offset_distance.value;
+            certificate.stop = Some(StopProof { offset_distance, triangles: contact.triangles });
         }
         certificate.lower = proven_gap(scene, aim, end, &certificate.cover) / scene.setting.length;
         if certificate.lower <= 0.0 {

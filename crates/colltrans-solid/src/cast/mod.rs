@@ -75,7 +75,7 @@ pub struct SolidOptions {
     /// change a fit by that length.
     pub tolerance: Option<f64>,
     /// End of the query, in multiples of the direction. Contacts of the offset bodies at this translation or beyond
-    /// are ignored. For a body that is cast against many others, this is the smallest `shrunk_distance` found
+    /// are ignored. For a body that is cast against many others, this is the smallest `offset_distance` found
     /// before. The nominal bodies may meet long before the offset ones.
     pub before: Option<f64>,
     /// Result of [`SolidCast::overlaps`] for the same bodies, poses and tolerance, if it is known. One test then

@@ -79,7 +79,7 @@ pub struct StopProof {
     /// Least gap of the facets of the offset bodies, in multiples of the direction, at least 0. It is the value of
     /// [`SolidContact::offset_distance`](crate::SolidContact::offset_distance).
     #[cfg_attr(feature = "serde", serde(rename = "distance"))]
-    pub shrunk_distance: f64,
+    pub offset_distance: f64,
     /// Positions in [`Solid::triangles`] of the moving and of the fixed body.
     pub triangles: [u32; 2],
 }

@@ -59,13 +59,13 @@ pub(super) fn verify_clearance(
         return if reached { Ok(0.0) } else { Err(unproven) };
     };
     let error = verify_stop(&scene, aim, stop)?;
-    let gap = stop.shrunk_distance - *lower;
+    let gap = stop.offset_distance - *lower;
     let tolerance = (2.0 * leaf::SHARP + 2.0 * SLACK) * scene.noise + 2.0 * error;
     let tolerance = tolerance / scene.setting.length;
     if (-tolerance..=tolerance).contains(&gap) && *lower >= 0.0 {
         Ok(gap.max(0.0))
     } else {
-        Err(CertificateError::Bound { proven: *lower, claimed: stop.shrunk_distance })
+        Err(CertificateError::Bound { proven: *lower, claimed: stop.offset_distance })
     }
 }
 
@@ -153,9 +153,9 @@ fn verify_stop(scene: &PairFrame, aim: Aim, stop: &StopProof) -> Result<f64, Cer
     let (least, error) = exact_gap(scene, aim, stop.triangles).ok_or(refused)?;
     let proven = aim.clamp_gap(least) / scene.setting.length;
     let tolerance = (error + leaf::FINE * scene.noise) / scene.setting.length;
-    if (stop.shrunk_distance - proven).abs() <= tolerance {
+    if (stop.offset_distance - proven).abs() <= tolerance {
         Ok(if scene.has_min_gap() { error } else { 0.0 })
     } else {
-        Err(CertificateError::Bound { proven, claimed: stop.shrunk_distance })
+        Err(CertificateError::Bound { proven, claimed: stop.offset_distance })
     }
 }

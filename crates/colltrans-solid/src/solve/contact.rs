@@ -113,12 +113,12 @@ fn bounded_gap(scene: &PairFrame, (gap, error): (f64, f64), others: f64) -> Boun
     Bounded { value, lower, upper }
 }
 
-/// Builds the contact of two facets that a search in `scene` has found. `shrunk_distance` is the translation, in
+/// Builds the contact of two facets that a search in `scene` has found. `offset_distance` is the translation, in
 /// multiples of the direction, at which the offset bodies meet, with its bounds.
 pub(crate) fn contact_of_facets(
     scene: &PairFrame,
     found: &LeastGap,
-    shrunk_distance: Bounded,
+    offset_distance: Bounded,
     steps: SolidSteps,
 ) -> SolidContact {
     let origin = scene.setting.translations[0];
@@ -187,11 +187,11 @@ pub(crate) fn contact_of_facets(
     let on_g = FacetPoint { vertices: of_g.vertices, weights: on_g };
     let normal = (scene.frame.transpose() * normal).normalize_or_zero();
     let translation = if moving.amount == 0.0 && fixed.amount == 0.0 {
-        shrunk_distance
+        offset_distance
     } else {
         let shift = on_f.offset_displacement(moving) - on_g.offset_displacement(fixed);
         let pair = [found.moving, found.fixed];
-        nominal_translation(&scene.with_offsets(0.0, 0.0), pair, shrunk_distance, normal, shift)
+        nominal_translation(&scene.with_offsets(0.0, 0.0), pair, offset_distance, normal, shift)
     };
     let named = |side: &PlacedBody, triangle, foot: &FacetPoint| {
         let at = foot.weighted_mean(|v| side.solid.vertices()[v as usize]);
@@ -199,7 +199,7 @@ pub(crate) fn contact_of_facets(
     };
     SolidContact {
         translation,
-        offset_distance: shrunk_distance,
+        offset_distance: offset_distance,
         normal,
         point_on_moving: on_f.nominal_point(moving) + origin,
         point_on_fixed: on_g.nominal_point(fixed) + origin,

@@ -129,7 +129,7 @@ fn changed_proofs_are_refused() {
     assert!(kept.verify(&less).is_err());
     let mut other = proof.clone();
     if let Some(stop) = &mut other.stop {
-        stop.shrunk_distance -= 1e-6;
+        stop.offset_distance -= 1e-6;
     }
     assert!(kept.verify(&other).is_err());
     for entry in 0..proof.cover.entries().len() {

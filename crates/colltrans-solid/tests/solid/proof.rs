@@ -92,7 +92,7 @@ fn every_field_that_is_changed_is_refused() {
     assert!(matches!(refused(&|p| p.stop = None), CertificateError::Bound { .. }));
     for more in [1e-6, -1e-6, 3.0, f64::NAN] {
         let far =
-            |p: &mut SolidCertificate| p.stop.as_mut().expect("a stop").shrunk_distance += more;
+            |p: &mut SolidCertificate| p.stop.as_mut().expect("a stop").offset_distance += more;
         assert!(matches!(refused(&far), CertificateError::Bound { .. }));
     }
     for triangle in [0, 1, 2, 1_000_000] {

@@ -236,12 +236,12 @@ impl<'h, 'a> HullTransfer<'h, 'a> {
         if most < least || most >= end {
             return None;
         }
-        let shrunk_distance =
+        let offset_distance =
             Bounded { value: value.clamp(least, most), lower: least, upper: most };
         let translation = if shrunk {
             Bounded { value: contact.translation, lower, upper: upper(false)? }
         } else {
-            shrunk_distance
+            offset_distance
         };
         let surface_points = self.contact_points(contact);
         let (triangles, steps) = match known {
@@ -254,7 +254,7 @@ impl<'h, 'a> HullTransfer<'h, 'a> {
         let points = contact.witness_points(&self.hulls.cast);
         let contact = SolidContact {
             translation,
-            offset_distance: shrunk_distance,
+            offset_distance: offset_distance,
             normal,
             point_on_moving: points.on_moving,
             point_on_fixed: points.on_fixed,

@@ -54,11 +54,11 @@ pub fn approve(
     let Some(stop) = &certificate.stop else { return Ok(()) };
     let [s, t] = stop.triangles.map(|k| k as usize);
     let value = judge.gaps(&moving[s], &fixed[t]).contribution();
-    let near = |v: &Ratio| v.minus(&Ratio::from_f64(stop.shrunk_distance)).is_within(slack);
+    let near = |v: &Ratio| v.minus(&Ratio::from_f64(stop.offset_distance)).is_within(slack);
     match value {
         Some(value) if near(&value) => Ok(()),
         other => {
-            Err(format!("facets {s} and {t} stop it at {other:?}, not {}", stop.shrunk_distance))
+            Err(format!("facets {s} and {t} stop it at {other:?}, not {}", stop.offset_distance))
         }
     }
 }

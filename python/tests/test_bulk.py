@@ -136,7 +136,10 @@ def test_lines_with_another_question_become_errors_and_lose_no_row(tmp_path: Pat
         ({"query": "clearance"}, "the question 'range' does not read 'query', which would"),
         ({"solver": "cta"}, "the question 'range' does not read 'solver', which would"),
         ({"length": 1}, "the question 'range' does not read 'length'; --keep length"),
-        ({"min_gaps": 1}, "the question 'range' does not read 'min_gaps' (is it 'min_gap'?); --keep min_gaps"),
+        (
+            {"min_gaps": 1},
+            "the question 'range' does not read 'min_gaps' (is it 'min_gap'?); --keep min_gaps",
+        ),
         ({"moving_pose": {"matrix": np.eye(4).tolist()}}, "moving_pose: neither a list of numbers"),
         ({"moving_pose": {"translation": 5}}, "moving_pose.translation: not a list of numbers"),
         ({"moving_pose": {"rotation": [0, 1]}}, "moving_pose: 3 and 2 numbers, not 3 and 4"),

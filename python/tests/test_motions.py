@@ -75,7 +75,9 @@ def test_rows_have_the_bits_of_the_command_line(batch: Batch, min_gap: float) ->
     cloud = ConvexPolyhedron(np.asarray(CLOUD.vertices))
     cube = ConvexPolyhedron(CUBE.vertices)
     there = batch(lines(numbers, places, **({"min_gap": min_gap} if min_gap else {})))
-    columns = motion_many(cube, cloud, {"screw": numbers}, moving_pose=places, min_gap=min_gap, threads=3)
+    columns = motion_many(
+        cube, cloud, {"screw": numbers}, moving_pose=places, min_gap=min_gap, threads=3
+    )
     assert len(columns) == n and not columns.errors
     for i, answer in enumerate(there):
         answer = {k: v for k, v in answer.items() if k not in ("id", "notes")}

@@ -121,7 +121,9 @@ def test_unions_and_offset_bodies_have_proofs_or_name_the_reason(
         assert "stops the moving one before" in verify(tmp_path / "proof.json")
         assert check.check(blocked.proof_json()).holds
     smaller, _ = step.shrunk(0.125)
-    with pytest.raises(colltrans.CaseError, match="differ from those that are rebuilt from its facets"):
+    with pytest.raises(
+        colltrans.CaseError, match="differ from those that are rebuilt from its facets"
+    ):
         SolidCast(cube, smaller, [0, 0, -1]).clearance().proof_json()
 
 

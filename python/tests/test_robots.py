@@ -158,13 +158,20 @@ def test_invalid_arguments_are_refused(tmp_path: Path) -> None:
     refused(InputError, "path: not an array of numbers", [["a", "b", "c"]])
     refused(InputError, "path: .*none.csv: cannot be read", tmp_path / "none.csv")
     refused(InputError, "columns: 2 names for rows of 3 values", ROWS, columns=["a", "b"])
-    refused(InputError, "path: column a does not name an independent joint", ROWS, columns=["a", "elbow", "reach"])
+    refused(
+        InputError,
+        "path: column a does not name an independent joint",
+        ROWS,
+        columns=["a", "elbow", "reach"],
+    )
     refused(
         InputError, "path: invalid time 1 of row 2; times must be finite", ROWS, times=[0, 2, 1]
     )
     refused(InputError, r"path: the path has \d+ rows and 2 times; give", ROWS, times=[0, 1])
     refused(InputError, "path: joint hand is not an independent joint", ROWS, joints={"hand": 1.0})
-    refused(InputError, "ignore: unknown name hand; known names: base", ROWS, ignore=[("tool", "hand")])
+    refused(
+        InputError, "ignore: unknown name hand; known names: base", ROWS, ignore=[("tool", "hand")]
+    )
     refused(QueryError, "gap", ROWS, min_gap=-1.0)
     refused(
         QueryError,

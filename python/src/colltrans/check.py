@@ -2185,7 +2185,10 @@ class Span:
             is_deep(claim, corners, least, (off, self.rounded()), max(-self.min_gap, Fraction()))
         elif kind == "near" and self.min_gap > 0:
             is_near(
-                claim, self.ends(near_claim(claim)["pairs"], time), (off, self.rounded()), self.min_gap
+                claim,
+                self.ends(near_claim(claim)["pairs"], time),
+                (off, self.rounded()),
+                self.min_gap,
             )
         else:
             raise RefusedError(f"{kind!r} does not prove that the bodies meet")
@@ -3150,7 +3153,9 @@ class Couple:
 
     def has(self, plane: Plane, row: int) -> bool:
         unit(plane.normal)
-        return plane.gap > 0 and plane.is_left(self.gap(plane.normal, row, plane.time), self.min_gap)
+        return plane.gap > 0 and plane.is_left(
+            self.gap(plane.normal, row, plane.time), self.min_gap
+        )
 
     def joins(self, row: int, a: Plane, b: Plane) -> bool:
         """Checks whether two planes of a row prove everything between them.

@@ -100,7 +100,7 @@ def cast_many(
     order or on ``threads``.
 
     Rows of flat bodies, of bodies with more than 16,384 pairs of vertices, with ``solver="cta"`` or
-    with a gap ``min_gap`` always have the bits of :func:`cast`. ``columns[i]`` has them too, because
+    with ``min_gap`` always have the bits of :func:`cast`. ``columns[i]`` has them too, because
     it answers row ``i`` again by itself. Its margin, bounds and point may differ from those of the
     columns.
 

@@ -93,13 +93,13 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
     Parameters
     ----------
     queries : pyarrow.Table or pyarrow.RecordBatch
-        Columns ``moving`` and ``fixed`` (keys of bodies), ``direction`` (3 numbers), and optionally
-        ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance``, ``min_gap`` and
-        ``id``. *distance*, *depth* and *within* have no ``direction``; *within* has ``length``.
-        *motion* and *motion_clearance* have ``moving_screw``, ``fixed_screw`` or both, with 8 numbers
-        each (point, axis, angle in radians, rise), and optionally ``min_gap`` or ``tolerance``.
-        A clearance of solids has ``tolerance`` instead of ``graze_tolerance``. *directions* may have
-        ``tolerance``.
+        Columns ``moving`` and ``fixed`` (keys of bodies), ``direction`` (3 numbers), and
+        optionally ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance``,
+        ``min_gap`` and ``id``. *distance*, *depth* and *within* have no ``direction``; *within*
+        has ``length``. *motion* and *motion_clearance* have ``moving_screw``, ``fixed_screw``
+        or both, with 8 numbers each (point, axis, angle in radians, rise), and optionally
+        ``min_gap`` or ``tolerance``. A clearance of solids has ``tolerance`` instead of
+        ``graze_tolerance``. *directions* may have ``tolerance``.
     bodies : Bodies
     options : Options
 

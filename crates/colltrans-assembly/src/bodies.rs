@@ -202,7 +202,7 @@ impl ShrunkBody {
 pub struct Bodies<'a> {
     assembly: &'a Assembly,
     fit: Fit,
-    shrunk_bodies: Vec<ShrunkBody>,
+    shrunk_parts: Vec<ShrunkBody>,
     /// Fits of pairs with a role or tolerance of their own, the smaller index first.
     pairs: BTreeMap<[usize; 2], OwnFit>,
     /// The body of the first part in queries against the second one, where it differs from the general body.
@@ -272,7 +272,7 @@ impl<'a> Bodies<'a> {
         let mut bodies = Self {
             assembly,
             fit,
-            shrunk_bodies: displaced,
+            shrunk_parts: displaced,
             pairs,
             own,
             boxes,
@@ -338,7 +338,7 @@ impl<'a> Bodies<'a> {
 
     /// Returns the body of a part in queries against another one.
     fn pair_body(&self, [part, other]: [usize; 2]) -> &ShrunkBody {
-        self.own.get(&[part, other]).map_or(&self.shrunk_bodies[part], |own| own)
+        self.own.get(&[part, other]).map_or(&self.shrunk_parts[part], |own| own)
     }
 
     /// Returns the solid from which [`Self::pair_body`] was shrunk.
@@ -406,7 +406,7 @@ impl<'a> Bodies<'a> {
             let found = displaced.faults(displaced.core.as_ref().unwrap_or(given));
             (!found.is_empty()).then(|| format!("{by}; {}", found.join("; ")))
         };
-        let all = faults(&self.shrunk_bodies[part], "shrunk by half the tolerance");
+        let all = faults(&self.shrunk_parts[part], "shrunk by half the tolerance");
         let own = self.own.iter().filter(|x| x.0[0] == part).filter_map(|([_, other], own)| {
             let other = self.assembly.parts()[*other].name();
             faults(own, &format!("shrunk by half the tolerance of its pair with {other}"))
@@ -515,7 +515,7 @@ impl<'a> Bodies<'a> {
     pub(crate) fn measure_along(&self, directions: &[DVec3]) {
         self.slabs.get_or_init(|| {
             let mut bodies: Vec<Vec<&Solid>> =
-                self.shrunk_bodies.iter().map(|part| vec![&part.solid]).collect();
+                self.shrunk_parts.iter().map(|part| vec![&part.solid]).collect();
             for ([part, _], own) in &self.own {
                 bodies[*part].push(&own.solid);
             }
@@ -692,11 +692,11 @@ impl<'a> Bodies<'a> {
         let mut first = 0;
         let mut first_facet = |&part: &usize| {
             let begin = first;
-            first += self.shrunk_bodies[part].solid.input_counts()[1];
+            first += self.shrunk_parts[part].solid.input_counts()[1];
             (part, begin)
         };
         let first_facets = parts.iter().map(&mut first_facet).collect();
-        let solid = Solid::from_pieces(parts.iter().map(|&part| &self.shrunk_bodies[part].solid));
+        let solid = Solid::from_pieces(parts.iter().map(|&part| &self.shrunk_parts[part].solid));
         let refused = |e| AssemblyError::Free(FreeError::Query(QueryError::from(e)));
         Ok((solid.map_err(refused)?, first_facets))
     }

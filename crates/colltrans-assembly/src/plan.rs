@@ -283,7 +283,7 @@ impl<'a> Planner<'a> {
             Some(known) => self.complete_matrix = Some(known),
             None => {
                 self.complete_matrix =
-                    Some(matrix.complete_among(&self.bodies.part_mask(left), self.watch)?)
+                    Some(matrix.complete_among(&self.bodies.part_mask(left), self.watch)?);
             }
         }
         Ok(self.complete_matrix.clone().unwrap_or_else(|| matrix.clone()))

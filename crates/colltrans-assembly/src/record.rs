@@ -235,7 +235,7 @@ fn passed_json(assembly: &Assembly, passed: &ToleratedContact) -> Value {
     });
     match passed.tolerated {
         PairTolerance::Within(length) | PairTolerance::Snap(length) => {
-            object["tolerance"] = json!(length)
+            object["tolerance"] = json!(length);
         }
         PairTolerance::Core(radius) => object["core_radius"] = json!(radius),
         PairTolerance::Crossing | PairTolerance::Glued => (),

@@ -190,7 +190,7 @@ impl<'a> Reader<'a> {
         for child in &node.children {
             match child.name.as_str() {
                 "instance_node" => {
-                    self.add_node(self.referenced(child)?, world, depth + 1, mesh)?
+                    self.add_node(self.referenced(child)?, world, depth + 1, mesh)?;
                 }
                 "node" => self.add_node(child, world, depth + 1, mesh)?,
                 _ => {}

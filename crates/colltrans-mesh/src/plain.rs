@@ -15,7 +15,7 @@ pub fn is_control(c: char) -> bool {
         || matches!(c, '\u{e0000}'..='\u{e007f}')
 }
 
-/// Escapes all characters that [is_control] matches, for example as `\u{1b}` or `\n`.
+/// Escapes all characters that [`is_control`] matches, for example as `\u{1b}` or `\n`.
 pub fn escape_control(text: &str) -> Cow<'_, str> {
     escape_where(text, is_control, |c| c.escape_default().to_string())
 }

@@ -187,7 +187,7 @@ pub(crate) mod tests {
         }
         for corners in hostile {
             grid.visit_covered(corners, |cell, depth| {
-                assert!(depth.is_finite(), "{cell} of {corners:?}")
+                assert!(depth.is_finite(), "{cell} of {corners:?}");
             });
         }
         for corners in

@@ -271,7 +271,7 @@ impl SolidPairSearch for Pair<'_, Solid> {
         };
         let NearestFacets { spot, lower, cover, mut steps } =
             search_nearest(self, &scene, until, prove && until.beyond.is_finite());
-        let near = spot.map(|spot| spot.to_upper_bound(&scene));
+        let near = spot.map(|spot| spot.solid_near(&scene));
         let meeting = || nested_shell(&scene).map(SolidNear::Meeting);
         let closer = near.map_or_else(meeting, |near| (near.distance() <= length).then_some(near));
         if let Some(near) = closer {
@@ -279,7 +279,7 @@ impl SolidPairSearch for Pair<'_, Solid> {
         }
         if lower > length {
             let near = near.unwrap_or_else(|| {
-                NearestPoints::from_triangles(&scene, [0, 0]).to_upper_bound(&scene)
+                NearestPoints::from_triangles(&scene, [0, 0]).solid_near(&scene)
             });
             let answer = Within::Farther(SolidGap { gap: lower });
             return Ok(((answer, steps), ProofInput { near, cover }));
@@ -385,7 +385,7 @@ fn distance_answer(
     let spot = nearest.spot.unwrap_or_else(|| NearestPoints::from_triangles(scene, [0, 0]));
     let (near, points) = match place {
         Some(place) => (SolidNear::Meeting(place), shared_points(scene, place)),
-        None => (spot.to_upper_bound(scene), spot.witness_points(scene)),
+        None => (spot.solid_near(scene), spot.witness_points(scene)),
     };
     let lower = if place.is_some() { 0.0 } else { nearest.lower };
     let spot = (lower > 0.0).then_some(spot);

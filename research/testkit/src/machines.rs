@@ -295,7 +295,7 @@ fn stack_prisms(mut low: f64, prisms: &[(Vec<DVec2>, f64)], holes: &[Vec<DVec2>]
                 );
             }
             Some((next, _)) => {
-                made.face(&loop_at_height(outline, low), &[loop_at_height(next, low)])
+                made.face(&loop_at_height(outline, low), &[loop_at_height(next, low)]);
             }
         }
     }

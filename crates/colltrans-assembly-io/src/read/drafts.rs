@@ -109,7 +109,7 @@ impl Draft {
     }
 
     /// Marks the draft as one part by declaration of the source.
-    pub(super) fn as_one_part(self) -> Self {
+    pub(super) fn marked_as_one_part(self) -> Self {
         Self { is_one_part: true, ..self }
     }
 

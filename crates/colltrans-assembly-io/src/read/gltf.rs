@@ -509,7 +509,7 @@ impl Reader<'_> {
             let extras = &self.document.nodes[node].extras;
             let chord_error = extras.chord_error().map(|error| error * per_metre);
             let draft = Draft { chord_error, colour, ..Draft::new(name, pieces) };
-            drafts.push(if extras.is_part() { draft.as_one_part() } else { draft });
+            drafts.push(if extras.is_part() { draft.marked_as_one_part() } else { draft });
         }
         Ok((drafts, self.left_out))
     }

@@ -315,7 +315,7 @@ impl PartGatherer {
                 )
             })?;
             let draft = Draft { fixed: entry.fixed, split, ..Draft::new(name, pieces) };
-            self.drafts.push(draft.as_one_part());
+            self.drafts.push(draft.marked_as_one_part());
         } else {
             self.left_out.push(name);
         }

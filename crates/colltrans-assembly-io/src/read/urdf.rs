@@ -83,7 +83,7 @@ impl<'a> PartGatherer<'a> {
                 |reason: String| contents_error(self.source.path, format!("link {name}"), reason);
             self.budget.count_placed().map_err(refused)?;
             let pieces = pieces.into_iter().map(Placed::from).collect();
-            self.drafts.push(Draft::new(name, pieces).as_one_part());
+            self.drafts.push(Draft::new(name, pieces).marked_as_one_part());
         }
         Ok(())
     }

@@ -245,7 +245,7 @@ impl Robot {
         let found = self.links.iter().position(|link| link.name == name);
         found.ok_or_else(|| {
             let names: Vec<&str> = self.links.iter().map(|link| link.name.as_str()).collect();
-            RobotError::Unknown { name: name.into(), known: format!("{}", names.join(", ")) }
+            RobotError::Unknown { name: name.into(), known: names.join(", ").clone() }
         })
     }
 }

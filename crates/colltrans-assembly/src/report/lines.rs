@@ -28,10 +28,7 @@ impl Lines {
                 match *pair {
                     [f, g]
                         if facet_normal(solid, f).dot(facet_normal(solid, g))
-                            > MIN_COPLANAR_COSINE =>
-                    {
-                        ()
-                    }
+                            > MIN_COPLANAR_COSINE => {}
                     [f, g] => all.push(Line { ends, faces: Some([f, g]) }),
                     _ => all.push(Line { ends, faces: None }),
                 }

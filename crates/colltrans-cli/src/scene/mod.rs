@@ -1,7 +1,7 @@
 //! Queries of one body and a scene (`--scene`): `distance` finds the nearest obstacle, `within` those closer than a length,
 //! `clearance` the first obstacle in the way.
 
-mod scene;
+mod loaded;
 mod text;
 
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ use crate::driver::{AnswerOutputs, OutputTargets, no_picture};
 use crate::failure::{Code, Failure};
 use crate::load;
 use crate::record::Line;
-use scene::{ReadOptions, Scene};
+use loaded::{ReadOptions, Scene};
 
 /// A query with a scene.
 struct SceneRequest<'a> {

@@ -61,7 +61,7 @@ impl Feature {
 /// Type of a part of an answer.
 #[cfg(not(feature = "serde"))]
 #[doc(hidden)]
-pub trait Told: Copy + Debug + PartialEq {}
+pub trait AnswerPart: Copy + Debug + PartialEq {}
 
 #[cfg(not(feature = "serde"))]
 impl<T: Copy + Debug + PartialEq> AnswerPart for T {}

@@ -78,7 +78,7 @@ impl Options {
     /// one.
     #[must_use]
     pub const fn with_min_gap(self, min_gap: f64) -> Self {
-        Self { min_gap: min_gap, ..self }
+        Self { min_gap, ..self }
     }
 
     /// Checks that the lengths are in range.
@@ -187,7 +187,7 @@ impl TryFrom<OptionsRecord> for Options {
         let OptionsRecord { start, until, keeps_to_cell, cuts, starts_cold, .. } = record;
         let narrowing = cta::Options { start, until, keeps_to_cell, cuts, starts_cold };
         let OptionsRecord { solver, graze_tolerance, min_gap, .. } = record;
-        let options = Self { solver, graze_tolerance, narrowing, min_gap: min_gap };
+        let options = Self { solver, graze_tolerance, narrowing, min_gap };
         options.check_lengths()?;
         Ok(options)
     }

@@ -1,8 +1,8 @@
 //! Two bodies that joints carry, between two consecutive rows: poses and bounds for the search and the check.
 //!
 //! Both bodies are in the frame that their chains start in. For points `p`, `q` of the bodies, `g = n.q - n.p` with a
-//! normal `n` that is linear in time. A bound `C >= g''` over all points gives `g(x) >= (1 - x) g(0) + x g(1) - C x (1
-//! - x) / 2`. Derivatives are by the row; `h` is the length of the interval. Derivation:
+//! normal `n` that is linear in time. A bound `C >= g''` over all points gives
+//! `g(x) >= (1 - x) g(0) + x g(1) - C x (1 - x) / 2`. Derivatives are by the row; `h` is the length of the interval. Derivation:
 //! `docs/theory/motion-bounds.md`.
 //!
 //! - *Loose* bound: `C_P = h^2 max |p''| + 2 h |dn| max |p'|`.

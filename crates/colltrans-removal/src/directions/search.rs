@@ -141,7 +141,7 @@ impl<'s, 'a> Search<'s, 'a> {
                     states[task.at] = CellState::Undecided(self.facet_pairs(&witnesses));
                 }
                 Decision::Open(witnesses) => {
-                    self.divide(&task, &witnesses, &mut states, &mut tasks)
+                    self.divide(&task, &witnesses, &mut states, &mut tasks);
                 }
             }
         }

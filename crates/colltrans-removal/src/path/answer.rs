@@ -185,7 +185,7 @@ impl RemovalSearch {
                 match enclosure.continue_search(own.min(options.cells), cancel)? {
                     Some(EnclosureResult::Proven(proof)) => return Ok(Self::Proven(proof)),
                     Some(EnclosureResult::Way(found)) => {
-                        (provable, proposal) = (false, Some(found))
+                        (provable, proposal) = (false, Some(found));
                     }
                     None => (),
                 }

@@ -353,7 +353,7 @@ impl Enclosure<'_> {
                     .find(|cell| self.states.contains_key(cell)),
             ),
             Some(DisplacementState::Divided) => {
-                cell.children_at(side).for_each(|part| self.adjacent_leaves(part, side, found))
+                cell.children_at(side).for_each(|part| self.adjacent_leaves(part, side, found));
             }
             Some(_) => found.push(cell),
         }

@@ -113,7 +113,7 @@ impl SolidOptions {
     /// Returns the options with a minimum gap in world units. [`Cast::with_options`] checks the value.
     #[must_use]
     pub const fn with_min_gap(self, min_gap: f64) -> Self {
-        Self { min_gap: min_gap, ..self }
+        Self { min_gap, ..self }
     }
 
     /// Returns the options with a known result of [`SolidCast::overlaps`], or without one.

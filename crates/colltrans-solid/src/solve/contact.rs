@@ -199,7 +199,7 @@ pub(crate) fn contact_of_facets(
     };
     SolidContact {
         translation,
-        offset_distance: offset_distance,
+        offset_distance,
         normal,
         point_on_moving: on_f.nominal_point(moving) + origin,
         point_on_fixed: on_g.nominal_point(fixed) + origin,

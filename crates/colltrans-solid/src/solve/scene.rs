@@ -87,8 +87,7 @@ impl<'a> PairFrame<'a> {
         let offset = setting.offset_and_error();
         let fixed =
             PlacedBody::new((setting.fixed, fixed, false), setting.fixed_matrix, offset, frame);
-        let mut scene =
-            Self { setting: *setting, moving, fixed, frame, min_gap: min_gap, noise: 0.0 };
+        let mut scene = Self { setting: *setting, moving, fixed, frame, min_gap, noise: 0.0 };
         scene.set_noise_and_gap(min_gap);
         scene
     }

@@ -11,8 +11,8 @@
 //! <= M_I <= M_K + B(h)`, with the following consequences for the input:
 //!
 //! - *Upper bound.* A point of `M_K` on the line is a point of `M_I`, so the bound is exact for the input.
-//! - *Lower bound.* A plane `n.m >= L n.d` below `M_K`, `|n| = 1`, is at most `h` above `M_I`. Answers state `L
-//!   - h / n.d`, so their lower bounds are exact for the input.
+//! - *Lower bound.* A plane `n.m >= L n.d` below `M_K`, `|n| = 1`, is at most `h` above `M_I`. Answers state
+//!   `L - h / n.d`, so their lower bounds are exact for the input.
 //! - *Separation.* If the shadow of `M_K` has a distance `margin` from the line, that of `M_I` has at least
 //!   `margin - h`. Answers state this value, and report `separated` if it is positive.
 //! - *Grazing.* The lateral overlap of the input is that of `K`, or up to `h` more.

@@ -169,7 +169,7 @@ impl Walk {
                 *pose = moved_pose(points, pose, turn, displacement);
             }
             Change::Turn(turn) => {
-                setting.direction = without_tiny_components(turn * setting.direction)
+                setting.direction = without_tiny_components(turn * setting.direction);
             }
             Change::Direction(direction) => setting.direction = direction,
             Change::Reverse => setting.direction = -setting.direction,

@@ -124,7 +124,7 @@ impl GapLine {
     #[inline]
     pub fn new(unit: DVec3, min_gap: f64, size: f64) -> Self {
         let noise = Noise::for_size(size + min_gap);
-        Self { unit, min_gap: min_gap, noise, max_distance: size + min_gap + noise.point_error() }
+        Self { unit, min_gap, noise, max_distance: size + min_gap + noise.point_error() }
     }
 
     /// Returns `n.d` for a unit normal: the divisor of lower bounds.

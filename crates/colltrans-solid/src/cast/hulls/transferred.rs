@@ -254,7 +254,7 @@ impl<'h, 'a> HullTransfer<'h, 'a> {
         let points = contact.witness_points(&self.hulls.cast);
         let contact = SolidContact {
             translation,
-            offset_distance: offset_distance,
+            offset_distance,
             normal,
             point_on_moving: points.on_moving,
             point_on_fixed: points.on_fixed,

@@ -76,7 +76,7 @@ impl NearestPoints {
         Self { triangles, nearest: triangle::nearest_points(&f, &g, scene.noise) }
     }
 
-    pub(crate) fn to_upper_bound(&self, scene: &PairFrame) -> SolidNear {
+    pub(crate) fn solid_near(&self, scene: &PairFrame) -> SolidNear {
         let Nearest { weights, length, .. } = self.nearest;
         let distance = length + triangle::LENGTH_NOISES * scene.noise;
         let weights = weights.map(|w| w.to_array());

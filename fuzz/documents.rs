@@ -55,7 +55,7 @@ pub(crate) fn lines(bytes: &[u8]) {
                 r#"{{"id":"a","moving":{body},"fixed":{{"mesh":"c.off","scale":2}},"moving_pose":{pose},"direction":[-0.3,0.1,-1]}}"#
             ),
             format!(
-                r#"{{"id":7,"moving":{body},"fixed":{body},"fixed_pose":{pose},"query":"within","length":0.5,"keep":0.25}}"#
+                r#"{{"id":7,"moving":{body},"fixed":{body},"fixed_pose":{pose},"query":"within","length":0.5,"min_gap":0.25}}"#
             ),
             format!(
                 r#"{{"moving":{body},"fixed":{body},"direction":[1,0,0],"solver":"cta","graze_tolerance":1e-9,"until":"exit"}}"#

@@ -184,5 +184,5 @@ fn external_3mf_and_glb_files_are_read() {
     assert_eq!(open("heartgears.3mf").unwrap().parts().len(), 1);
     assert!(open("ReciprocatingSaw.glb").unwrap().parts().len() > 10);
     let message = open("pillow_block.step").unwrap_err().to_string();
-    assert!(message.contains("STEP files are converted to GLB first"), "{message}");
+    assert!(message.contains("STEP is not read directly; convert the file to GLB"), "{message}");
 }

@@ -97,8 +97,8 @@ fn manifests_in_toml_and_json_place_parts() {
 fn manifest_errors_state_file_and_place() {
     let cases = [
         ("[[part]]\nfile = 'c.off'\nturned = 3\n", "line 3"),
-        ("[[part]]\nfile = 'c.off'\nscale = 0\n", "part 1 (c): scale"),
-        ("[[part]]\nfile = 'c.off'\nrotation = [0, 0, 0, 2]\n", "has length 2, not 1"),
+        ("[[part]]\nfile = 'c.off'\nscale = 0\n", "part 1 (c): invalid scale"),
+        ("[[part]]\nfile = 'c.off'\nrotation = [0, 0, 0, 2]\n", "has length 2, expected 1"),
         ("[[part]]\nfile = 'c.off'\nrotation = [[2,0,0],[0,1,0],[0,0,1]]\n", "is not a rotation"),
         ("[[part]]\nfile = 'gone.off'\n", "gone.off"),
         ("ignore = [['c', 'd']]\n[[part]]\nfile = 'c.off'\n", "unknown part d"),
@@ -432,7 +432,10 @@ fn rounded_rotations_are_normalised_and_shears_rejected() {
     ] {
         let assembly = manifest(few).unwrap();
         let [note] = assembly.notes() else { panic!("{:?}", assembly.notes()) };
-        assert!(note.starts_with("the rotation of c is ") && note.contains("normalised"), "{note}");
+        assert!(
+            note.starts_with("the rotation of c deviates ") && note.contains("normalised"),
+            "{note}"
+        );
         // A shear would keep the volume, but not the lengths of the edges.
         let solid = assembly.parts()[0].solid();
         let corner = |k: usize| solid.vertices()[k];

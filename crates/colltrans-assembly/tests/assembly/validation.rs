@@ -550,7 +550,7 @@ fn invalid_urdf_files_are_rejected() {
     );
     says(&refused("<robot>\n<xacro:include/></robot>".into()), &["line 2", "run xacro first"]);
     let deep = format!("<robot name='r'>{}", "<link name='a'>".repeat(50_000));
-    says(&refused(deep), &["nested deeper than 64"]);
+    says(&refused(deep), &["nested deeper than the accepted 64"]);
     let geometry = |shape: &str| {
         let link = format!("<collision><geometry>{shape}</geometry></collision>");
         format!("<robot><link name='a'>{link}</link></robot>")

@@ -239,7 +239,7 @@ fn invalid_sources_are_rejected_with_their_place() {
     write("bad.toml", "[[part]]\nfile = 'cube.off'\nscale = 'big'\n");
     refused(place, &["bad.toml"], 3, &["bad.toml: line 3"]);
     write("bad.toml", "[[part]]\nfile = 'cube.off'\nrotation = [0, 0, 0, 2]\n");
-    refused(place, &["bad.toml"], 3, &["bad.toml: part 1 (cube)", "length 2, not 1"]);
+    refused(place, &["bad.toml"], 3, &["bad.toml: part 1 (cube)", "length 2, expected 1"]);
     write("bad.toml", "[[part]]\nfile = 'cube.off'\nrotation = { rpy_degrees = [nan, 0, 0] }\n");
     refused(place, &["bad.toml"], 3, &["bad.toml: part 1 (cube)", "rpy_degrees [NaN"]);
     write("bad.toml", "[[part]]\nfile = 'cube.off'\nrotation = { matrix = [[1, 0], [0, 1]] }\n");
@@ -290,9 +290,9 @@ fn missing_urdf_meshes_are_named_or_skipped() {
     let found = facts(place, &[&["two.urdf"], &root[..]].concat());
     assert_eq!(found["unit"], "m");
     assert_eq!(found["plan"].as_array().unwrap().len(), 1);
-    let words = ["lost.urdf: 1 of the meshes", "package://kit/gone.stl", "skip"];
+    let words = ["lost.urdf: 1 referenced meshes not found", "package://kit/gone.stl", "skip"];
     refused(place, &[&["lost.urdf"], &root[..]].concat(), 3, &words);
-    refused(place, &["lost.urdf"], 3, &["3 of the meshes", "package://kit/cube.off"]);
+    refused(place, &["lost.urdf"], 3, &["3 referenced meshes not found", "package://kit/cube.off"]);
     let output = run(place, &[&["lost.urdf", "--skip-missing", "--json"], &root[..]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(stderr(&output).contains("package://kit/gone.stl not found; left out"));

@@ -341,7 +341,7 @@ fn file_with_a_wrong_extension_is_rejected() {
         3,
         &["cube.stl: contains an OFF file, but its extension stands for STL"],
     );
-    refused(path, &["info", "cube.stl"], 3, &["holds an OFF file"]);
+    refused(path, &["info", "cube.stl"], 3, &["contains an OFF file"]);
 }
 
 /// Results are equal with a large cache and with the minimum of two bodies.

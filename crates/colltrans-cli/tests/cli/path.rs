@@ -352,7 +352,7 @@ fn invalid_mesh_needs_the_hull_option() {
     let text = answered(folder.path(), &[&asked[..], &["--hull", "b"]].concat());
     assert!(text.contains("  hulls        b: a contact is that"), "{text}");
     let unknown = run(folder.path(), &[&asked[..], &["--hull", "c"]].concat());
-    assert!(stderr(&unknown).contains("no link c"), "{}", stderr(&unknown));
+    assert!(stderr(&unknown).contains("unknown link c"), "{}", stderr(&unknown));
     let srdf = "<robot><disable_collisions link1=\"a\" link2=\"hand\" reason=\"Never\"/></robot>";
     fs::write(folder.path().join("other.srdf"), srdf).unwrap();
     let other =

@@ -105,7 +105,7 @@ fn bodies_of_a_file_are_split_or_joined() {
         at,
         &["assembly", "two.obj", "--split", "all"],
         2,
-        &["none of auto, never, names, bodies"],
+        &["accepted: auto, never, names, bodies"],
     );
     let told = answered(at, &["info", "two.obj"]);
     assert!(told.contains("2: low, high") && told.contains("2, split with"), "{told}");

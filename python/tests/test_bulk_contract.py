@@ -48,7 +48,7 @@ def test_misspelt_columns_are_refused_by_name(tmp_path: Path, bodies: Path, caps
 def test_columns_that_would_change_the_answer_are_refused(bodies: Path, name: str) -> None:
     table = table_of(queries(1, 2) | {name: [2.0, 3.0]})
     for kept in ((), (name,), ("*",)):
-        with pytest.raises(InputError, match=f"'range' does not read '{name}', and would"):
+        with pytest.raises(InputError, match=f"'range' does not read '{name}', which would"):
             answer_table(table, Bodies(str(bodies)), Options(keep_columns=kept))
 
 
@@ -294,7 +294,7 @@ def test_bodies_in_every_form_of_list_are_read(tmp_path: Path) -> None:
         ([[0.0, 0.0, 0.0], None], None, "points: entry 1 is null"),
         ([[0.0, None, 0.0]], None, "point 0 is not finite"),
         (CORNERS.tolist(), [[0, 1, 9]], "face 0"),
-        (CORNERS.tolist(), [[0, 1, -1]], "faces: the index -1 is negative"),
+        (CORNERS.tolist(), [[0, 1, -1]], "faces: index -1 is out of range"),
         (CORNERS.tolist(), [[0, 1, None]], "faces: not an array of whole numbers"),
     ],
 )

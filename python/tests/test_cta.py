@@ -62,7 +62,7 @@ def test_options_are_values_and_invalid_ones_are_refused() -> None:
     for until in ("end", -1.0, float("nan")):
         with pytest.raises(QueryError, match="accepted: `exit`, or a number"):
             Cta(until=until)  # type: ignore[arg-type]
-    with pytest.raises(QueryError, match='no region "near"'):
+    with pytest.raises(QueryError, match='unknown region "near"'):
         Tracker(region="near")  # type: ignore[arg-type]
     with pytest.raises(QueryError, match="half-side"):
         Tracker(region=-1.0)

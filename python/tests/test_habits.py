@@ -93,7 +93,7 @@ def test_columns_are_concatenated() -> None:
     assert joined.errors == {3: whole.errors[2]}
     assert joined[2].translation == 8.0 and joined[4].translation == 4.0
     assert joined[2].query.direction.tolist() == [0, 0, 1]
-    with pytest.raises(InputError, match="joined, not ClearanceColumns, ContactColumns"):
+    with pytest.raises(InputError, match="different classes: ClearanceColumns, ContactColumns"):
         concatenate([whole, clearance_many(CUBE, CUBE, AHEAD)])
     with pytest.raises(InputError, match="not nothing"):
         concatenate([])

@@ -90,7 +90,7 @@ def test_answers_save_their_proofs(cli: Path, tmp_path: Path) -> None:
     # The statement makes no claim about other obstacles.
     obstacles.set_pose(ball, [50, 0, 0])
     for answer in answers.values():
-        with pytest.raises(CaseError, match="moved or gone"):
+        with pytest.raises(CaseError, match="the obstacles have changed"):
             answer.verify()
     nearest = obstacles.nearest(CUBE, [60, 0, 0])
     assert nearest is not None and nearest.obstacle == ball

@@ -32,7 +32,7 @@ const NO_ROTATION: f64 = 1e-15;
 ///
 /// // A door swings by a quarter turn about the z axis.
 /// let door = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2)?;
-/// let end = door.at(1.0)?;
+/// let end = door.pose_at(1.0)?;
 /// assert!(end.transform_point(DVec3::X).distance(DVec3::Y) < 1e-15);
 /// # Ok::<(), colltrans::motion::MotionError>(())
 /// ```

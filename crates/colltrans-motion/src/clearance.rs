@@ -123,7 +123,7 @@ impl MotionCast<'_> {
     /// let table = ConvexPolyhedron::cuboid(DVec3::new(-4.0, -4.0, -1.0), DVec3::new(4.0, 4.0, 0.0))?;
     /// let clearance = |axis| {
     ///     let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::new(0.5, 0.5, 0.0), axis, 2.0)?;
-    ///     let cast = MotionCast::new(block.along(&turn), table.at(Pose::IDENTITY))?;
+    ///     let cast = MotionCast::new(block.with_motion(&turn), table.at(Pose::IDENTITY))?;
     ///     Ok::<_, Box<dyn std::error::Error>>(cast.clearance()?)
     /// };
     /// assert!(clearance(DVec3::Z)?.is_free());

@@ -15,7 +15,7 @@
 //! let swing = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2)?;
 //! let post_pose = Pose::from_translation(DVec3::new(0.6, 0.6, 1.0))?;
 //!
-//! let cast = MotionCast::new(door.along(&swing), post.at(post_pose))?;
+//! let cast = MotionCast::new(door.with_motion(&swing), post.at(post_pose))?;
 //! let MotionOutcome::Contact(contact) = cast.first_contact()? else { panic!("no contact") };
 //! assert!(0.4 < contact.lower && contact.lower <= contact.upper && contact.upper < 0.5);
 //! assert!(contact.upper - contact.lower < 1e-11);

@@ -33,7 +33,7 @@
 //! };
 //! assert_eq!(contact.translation, 3.0);
 //! assert_eq!(contact.normal, DVec3::NEG_Z);
-//! assert_eq!(contact.points(&cast).on_fixed, DVec3::new(0.5, 0.0, 0.0));
+//! assert_eq!(contact.witness_points(&cast).on_fixed, DVec3::new(0.5, 0.0, 0.0));
 //! let features = contact.features(&cast);
 //! assert_eq!((features.moving.kind(), features.fixed.kind()), ("vertex", "face"));
 //!

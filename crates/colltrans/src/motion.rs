@@ -14,7 +14,7 @@
 //! let post = ConvexPolyhedron::cuboid(DVec3::new(-0.1, 0.8, -1.0), DVec3::new(0.1, 1.0, 1.0))?;
 //! let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::PI)?;
 //!
-//! let cast = MotionCast::new(plank.along(&turn), post.at(Pose::IDENTITY))?;
+//! let cast = MotionCast::new(plank.with_motion(&turn), post.at(Pose::IDENTITY))?;
 //! let MotionOutcome::Contact(contact) = cast.first_contact()? else { panic!("no contact") };
 //! assert!(0.3 < contact.lower && contact.lower <= contact.upper && contact.upper < 0.5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

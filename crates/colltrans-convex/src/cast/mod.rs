@@ -224,7 +224,7 @@ impl<B: CastBody> Cast<'_, B> {
     /// # use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, FreeReason};
     /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
     /// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
-    /// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?.keeping(0.25)?;
+    /// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?.with_min_gap(0.25)?;
     /// let Outcome::Contact(contact) = cast.first_contact()? else {
     ///     unreachable!("half of the cube is in the way")
     /// };
@@ -234,9 +234,9 @@ impl<B: CastBody> Cast<'_, B> {
     /// // At a lateral distance of 0.5, a gap of 0.6 is reached, but one of 0.4 is not.
     /// let aside = Pose::from_translation(DVec3::new(-3.0, 1.5, 0.0))?;
     /// let aside = Cast::new(cube.at(aside), cube.at(Pose::IDENTITY), DVec3::X)?;
-    /// let near = aside.keeping(0.6)?.clearance()?.distance().expect("they are apart");
+    /// let near = aside.with_min_gap(0.6)?.clearance()?.distance().expect("they are apart");
     /// assert!((near - (2.0 - 0.11_f64.sqrt())).abs() < 1e-13);
-    /// assert!(matches!(aside.keeping(0.4)?.clearance()?, Clearance::Free(FreeReason::Separated(_))));
+    /// assert!(matches!(aside.with_min_gap(0.4)?.clearance()?, Clearance::Free(FreeReason::Separated(_))));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[inline]

@@ -75,7 +75,7 @@ impl Joint {
 ///     Frame { parent: None, origin: Pose::IDENTITY, joint: Joint::Turning(DVec3::Z) },
 ///     Frame { parent: Some(0), origin: elbow, joint: Joint::Turning(DVec3::Z) },
 /// ])?;
-/// assert_eq!(arm.joints(), 2);
+/// assert_eq!(arm.joint_count(), 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]

@@ -53,7 +53,7 @@ impl MotionCast<'_, Solid> {
     /// let plate = ConvexPolyhedron::cuboid(DVec3::new(0.0, 0.0, -0.125), DVec3::new(1.0, 2.0, 1.0))?;
     /// let out = Motion::rotation_about(Pose::IDENTITY, DVec3::new(-1.0, 0.0, 0.0), DVec3::NEG_Y, 1.0)?;
     /// let rest = Motion::at_rest(Pose::IDENTITY);
-    /// let cast = MotionCast::between_any(plate.along(&out), table.along(&rest))?;
+    /// let cast = MotionCast::between_any(plate.with_motion(&out), table.with_motion(&rest))?;
     /// let MotionClearance::Overlapping(found) = cast.clearance()? else { panic!() };
     /// assert!((found.least_tolerance.expect("there is one") - 0.125).abs() < 1e-9);
     /// assert!(cast.with_start_overlap(StartOverlap::Ignore).clearance()?.is_free());

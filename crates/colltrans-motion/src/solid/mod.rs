@@ -73,7 +73,7 @@ impl<'a> MotionCast<'a, Solid> {
     /// let scene = Solid::from_pieces([&post, &far])?;
     /// let swing = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::PI)?;
     /// let there = Motion::at_rest(Pose::from_translation(DVec3::Y * 1.5)?);
-    /// let cast = MotionCast::between_any(bar.along(&swing), scene.along(&there))?;
+    /// let cast = MotionCast::between_any(bar.with_motion(&swing), scene.with_motion(&there))?;
     /// let MotionOutcome::Contact(contact) = cast.first_contact()? else { panic!("no contact") };
     /// assert!(contact.lower < 0.5 && contact.upper - contact.lower < 1e-11);
     /// # Ok::<(), Box<dyn std::error::Error>>(())

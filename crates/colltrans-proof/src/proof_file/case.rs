@@ -23,7 +23,7 @@ const FORMAT: &str = "colltrans motion case 1";
 ///
 /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
 /// let turn = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 2.0)?;
-/// let cast = MotionCast::new(cube.along(&turn), cube.at(Pose::from_translation(DVec3::X * 1.2)?))?;
+/// let cast = MotionCast::new(cube.with_motion(&turn), cube.at(Pose::from_translation(DVec3::X * 1.2)?))?;
 ///
 /// let saved: String = MotionCase::from_cast(&cast).to_json();
 /// let case = MotionCase::from_json(&saved)?;

@@ -72,17 +72,17 @@ pub(super) fn convex_cast(
 /// let motion = Motion::translation(Pose::IDENTITY, DVec3::X * 4.0)?;
 /// let mut proofs = Vec::new();
 /// for x in [3.0, 2.0, 6.0] {
-///     let cast = MotionCast::new(cube.along(&motion), cube.at(Pose::from_translation(DVec3::X * x)?))?;
+///     let cast = MotionCast::new(cube.with_motion(&motion), cube.at(Pose::from_translation(DVec3::X * x)?))?;
 ///     proofs.push(ProofFile::of_motion(&cast, &cast.first_contact()?));
 /// }
 /// let saved = ProofFile::of_motions(proofs)?.to_json();
-/// let [lower, upper] = ProofFile::from_json(&saved)?.check()?.time().expect("bounds");
+/// let [lower, upper] = ProofFile::from_json(&saved)?.check()?.time_bounds().expect("bounds");
 /// assert!(lower <= 0.25 && 0.25 <= upper && upper - lower < 1e-12);
 ///
 /// let there = Motion::at_rest(Pose::from_translation(DVec3::new(3.0, 0.25, 0.375))?);
-/// let cast = MotionCast::between_any(cube.along(&motion), cube.along(&there))?;
+/// let cast = MotionCast::between_any(cube.with_motion(&motion), cube.with_motion(&there))?;
 /// let (_, saved) = ProofFile::with_solid_motion(&cast)?;
-/// let [lower, upper] = ProofFile::from_json(&saved.to_json())?.check()?.time().expect("bounds");
+/// let [lower, upper] = ProofFile::from_json(&saved.to_json())?.check()?.time_bounds().expect("bounds");
 /// assert!((lower - 0.5).abs() < 1e-11 && upper - lower < 1e-11);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -100,7 +100,7 @@ impl Verify<'_, PathSetting<'_>> for PathStatement {
 /// let cast = PathCast::new(&slide, &path, bodies, vec![[0, 1]])?;
 /// let names = ["cart".into(), "stop".into()];
 /// let (_, saved) = ProofFile::with_path(&cast, &names)?;
-/// let [lower, upper] = ProofFile::from_json(&saved.to_json())?.check()?.time().expect("bounds");
+/// let [lower, upper] = ProofFile::from_json(&saved.to_json())?.check()?.time_bounds().expect("bounds");
 /// assert!(lower <= 0.5 && 0.5 <= upper && upper - lower < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

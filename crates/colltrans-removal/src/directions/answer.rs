@@ -138,9 +138,9 @@ impl<'a> FreeDirections<'a> {
     /// let block = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
     /// let above = Pose::from_translation(DVec3::Z)?;
     /// let free =
-    ///     FreeDirections::of(&block.at(above), &block.at(Pose::IDENTITY), FreeOptions::default())?;
-    /// assert_eq!(free.says(DVec3::X)?, Verdict::Free);
-    /// assert!(matches!(free.says(DVec3::new(1.0, 0.0, -1e-50))?, Verdict::Blocked(_)));
+    ///     FreeDirections::compute(&block.at(above), &block.at(Pose::IDENTITY), FreeOptions::default())?;
+    /// assert_eq!(free.classify(DVec3::X)?, Verdict::Free);
+    /// assert!(matches!(free.classify(DVec3::new(1.0, 0.0, -1e-50))?, Verdict::Blocked(_)));
     /// assert_eq!(free.undecided_area(), 0.0);
     /// let half = std::f64::consts::TAU;
     /// assert!(free.free_area()[0] <= half && half <= free.free_area()[1]);
@@ -287,11 +287,11 @@ impl<'a> FreeDirections<'a> {
     /// ])?;
     /// let (bar, here) = (cuboid([0.0, 0.0, 0.0], [3.0, 1.0, 1.0])?, Pose::IDENTITY);
     /// let options = FreeOptions::default().with_no_tolerance();
-    /// let free = FreeDirections::of(&bar.at(here), &walls.at(here), options)?;
+    /// let free = FreeDirections::compute(&bar.at(here), &walls.at(here), options)?;
     /// let points = free.points();
     /// assert_eq!(points.len(), 2);
-    /// assert!(points.iter().any(|point| free.is_at(point, DVec3::X) == Ok(true)));
-    /// assert!(points.iter().all(|point| free.is_at(point, DVec3::new(1.0, 1e-50, 0.0)) == Ok(false)));
+    /// assert!(points.iter().any(|point| free.is_at_point(point, DVec3::X) == Ok(true)));
+    /// assert!(points.iter().all(|point| free.is_at_point(point, DVec3::new(1.0, 1e-50, 0.0)) == Ok(false)));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn is_at_point(&self, point: &FreePoint, direction: DVec3) -> Result<bool, QueryError> {

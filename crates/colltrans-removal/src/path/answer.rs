@@ -75,7 +75,7 @@ impl RemovalSearch {
     ///
     /// ```
     /// use colltrans::glam::DVec3;
-    /// use colltrans::removal::path::{RemovalOptions, WaysOut};
+    /// use colltrans::removal::path::{RemovalOptions, RemovalSearch};
     /// use colltrans::{ConvexPolyhedron, Pose, Solid};
     ///
     /// // A bar in a channel whose top is closed except for a window at one end.
@@ -93,7 +93,7 @@ impl RemovalSearch {
     /// let channel = Solid::from_pieces(&walls)?;
     /// let bar = block([0.5, 0.5, 0.5], [2.5, 2.5, 2.5])?;
     /// let at = Pose::IDENTITY;
-    /// let WaysOut::Found(way) = WaysOut::of(&bar.at(at), &channel.at(at), &RemovalOptions::default())?
+    /// let RemovalSearch::Found(way) = RemovalSearch::search(&bar.at(at), &channel.at(at), &RemovalOptions::default())?
     /// else {
     ///     unreachable!("the bar leaves along x, then up")
     /// };

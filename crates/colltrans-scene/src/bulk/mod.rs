@@ -63,7 +63,7 @@ const MIN_CASTS: usize = 500;
 /// let turn = DQuat::from_xyzw(0.1, 0.2, 0.3, 0.9).normalize();
 /// let [start, world] = [Pose::new(turn, DVec3::ZERO)?, Pose::IDENTITY];
 /// let rotations = FixedRotations::new(cube.at(start), cube.at(world));
-/// let down = rotations.along(DVec3::NEG_Z)?;
+/// let down = rotations.for_direction(DVec3::NEG_Z)?;
 /// for k in 0..100 {
 ///     let place = Pose::new(turn, DVec3::new(0.01 * f64::from(k), 0.2, 4.0))?;
 ///     let cast = Cast::new(cube.at(place), cube.at(world), DVec3::NEG_Z)?;

@@ -96,7 +96,7 @@ impl Solid {
     /// assert_eq!(smaller.bounds(), Aabb { low: DVec3::splat(0.25), high: DVec3::splat(0.75) });
     /// assert!((smaller.volume() - 0.125).abs() < 1e-15);
     /// assert!((report.farthest - 0.25 * 3.0_f64.sqrt()).abs() < 1e-15);
-    /// assert!(report.stuck.is_empty() && report.inverted.is_empty());
+    /// assert!(report.fixed_vertices.is_empty() && report.inverted.is_empty());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn shrunk(&self, amount: f64) -> Result<(Self, ShrinkReport), SolidError> {

@@ -26,7 +26,7 @@ const PHASE_NAMES: [&str; 7] = [
 /// let mut clock = Clock::new();
 /// let cast = Cast::new(body.at(start), body.at(Pose::IDENTITY), DVec3::X)?;
 /// cast.first_contact_observed(&mut clock)?;
-/// assert!(clock.profile().total() > 0.0);
+/// assert!(clock.profile().total_nanoseconds() > 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]

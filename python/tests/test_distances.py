@@ -248,7 +248,7 @@ def test_files_of_queries_ask_distances(tmp_path: Path) -> None:
     told = {}
     for question in ("distance", "depth", "within"):
         out = tmp_path / question / "queries.parquet"
-        kept = [] if question == "within" else ["--min-gap", "length"]
+        kept = [] if question == "within" else ["--keep", "length"]
         code = main([str(queries), str(out), "--hull", "--question", question, *kept])
         assert code == (5 if question == "within" else 0)
         told[question] = pa.parquet.read_table(out).to_pydict()

@@ -294,10 +294,10 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
 ///     The motions of the bodies. A :class:`Pose`, or seven numbers or a matrix of a pose, stands for rest.
 ///     Three numbers are rejected, because they could be a displacement (:meth:`Motion.slide`) or a position
 ///     (:meth:`Motion.still`).
-/// keep : float
+/// min_gap : float
 ///     A minimum gap, a length. The query then returns when the distance of the bodies first falls to it.
 /// tolerance : float, optional
-///     For convex bodies a tolerated depth, instead of ``keep``: the query returns when they first overlap by
+///     For convex bodies a tolerated depth, instead of ``min_gap``: the query returns when they first overlap by
 ///     more. Solids are shrunk by half of it; the default follows from the precision of their files and from
 ///     rounding.
 /// ignore_start_overlaps : bool
@@ -916,7 +916,7 @@ impl Answer for Cleared {
 ///
 /// Parameters
 /// ----------
-/// moving, fixed, moving_motion, fixed_motion, keep, tolerance
+/// moving, fixed, moving_motion, fixed_motion, min_gap, tolerance
 ///     See :class:`MotionCast`.
 ///
 /// Returns
@@ -954,7 +954,7 @@ pub(crate) fn first_contact(
 ///
 /// Parameters
 /// ----------
-/// moving, fixed, moving_motion, fixed_motion, keep, tolerance, ignore_start_overlaps
+/// moving, fixed, moving_motion, fixed_motion, min_gap, tolerance, ignore_start_overlaps
 ///     See :class:`MotionCast`.
 ///
 /// Returns

@@ -321,7 +321,7 @@ impl Obstacles {
     ///     A vector of any length. Translations are multiples of it.
     /// before : float, optional
     ///     Obstacles that are not met before this translation are ignored.
-    /// keep : float
+    /// min_gap : float
     ///     A minimum gap, a length. The body stops when its distance from an obstacle falls to it.
     ///
     /// Returns
@@ -398,7 +398,7 @@ impl Obstacles {
     ///
     /// Parameters
     /// ----------
-    /// body, before, keep, ignore
+    /// body, before, min_gap, ignore
     ///     See :meth:`clearance`.
     /// directions : array_like of shape (N, 3) or (3,)
     ///     One direction for each pose, or one for all.

@@ -39,7 +39,7 @@ pub(crate) struct Arguments<'a, 'py> {
 ///     Poses of the bodies in the world; see :class:`Pose`.
 /// graze_tolerance : float
 ///     Lateral overlaps up to this length count as grazing. With 0 the limit follows from rounding errors.
-/// keep : float
+/// min_gap : float
 ///     A minimum gap, a length. With a gap all questions refer to the translation at which the distance falls
 ///     to the gap instead of contact. Points of answers are then the gap apart.
 /// solver : {"auto", "cta", "portal"} or Cta

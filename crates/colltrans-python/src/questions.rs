@@ -297,7 +297,7 @@ question! {
     /// graze_tolerance : float
     ///     Lateral overlaps up to this length count as grazing. With 0 the limit follows from rounding
     ///     errors.
-    /// keep : float
+    /// min_gap : float
     ///     A minimum gap, a length. With a gap the result is the translation at which the distance of the
     ///     bodies first falls to it.
     /// solver : {"auto", "cta", "portal"} or Cta
@@ -332,7 +332,7 @@ question! {
     ///
     /// Parameters
     /// ----------
-    /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, keep, solver
+    /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, min_gap, solver
     ///     See :func:`cast`.
     ///
     /// Returns
@@ -360,7 +360,7 @@ question_of_any! {
     ///     The moving and the fixed body.
     /// direction, moving_pose, fixed_pose
     ///     See :func:`cast`.
-    /// keep : float
+    /// min_gap : float
     ///     A minimum gap, a length. The body stops when the distance falls to it. Bodies that are closer at
     ///     the start count as overlapping.
     /// graze_tolerance, solver
@@ -385,7 +385,7 @@ question_of_any! {
     /// Blocked 0.0
     /// Slides inf
     /// Behind inf
-    /// >>> round(clearance(cube, cube, [0, 0, -1], moving_pose=[0, 0, 4], keep=0.25).distance, 9)
+    /// >>> round(clearance(cube, cube, [0, 0, -1], moving_pose=[0, 0, 4], min_gap=0.25).distance, 9)
     /// 2.75
     clearance => clearance, SolidCast::clearance
 }
@@ -395,7 +395,7 @@ question! {
     ///
     /// Parameters
     /// ----------
-    /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, keep, solver
+    /// moving, fixed, direction, moving_pose, fixed_pose, graze_tolerance, min_gap, solver
     ///     See :func:`cast`.
     ///
     /// Returns
@@ -419,7 +419,7 @@ question_of_any! {
     /// moving, fixed : ConvexPolyhedron or Solid
     /// direction, moving_pose, fixed_pose, graze_tolerance, solver, tolerance, ignore_start_overlaps
     ///     See :func:`clearance`. The answer does not depend on the direction and the tolerances.
-    /// keep : float
+    /// min_gap : float
     ///     For convex bodies a gap, a length: checks whether their distance is at most the gap. For solids
     ///     call :func:`within`.
     ///

@@ -268,7 +268,7 @@ impl Robot {
     ///     Bodies of the scene, in metres, by name.
     /// ignore : list of tuple of (str, str)
     ///     Pairs of links, or of a link and a scene body, that are excluded from collision checks.
-    /// keep : float
+    /// min_gap : float
     ///     A minimum gap. The query then returns when the distance of two bodies first falls to it.
     /// joints : dict of str to float, optional
     ///     Joints with fixed values. These joints have no column.
@@ -470,7 +470,7 @@ getters!(PathAnswer, |it| {
     /// ndarray of shape (3,) or None: Unit normal in the world, from the first body to the second.
     normal(py): Option<Vector<'py>> = it.contact()?.normal.map(|normal| row(py, normal));
     /// list of tuple of (str, str): All pairs that overlap at the start of the path, or are as near as
-    /// ``keep`` there.
+    /// ``min_gap`` there.
     overlaps: Vec<(String, String)> = it.record.overlaps.iter().cloned().map(Into::into).collect();
     /// list of str: Links whose meshes are replaced by their convex hulls. A contact of such a link is one of
     /// its hull.

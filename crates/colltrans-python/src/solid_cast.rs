@@ -35,7 +35,7 @@ use crate::solid::Piece;
 ///     of the command line: twice the possible rounding of the coordinates in both files
 ///     (:attr:`Solid.precision`), and at least what rotated poses need. It is 0 for bodies without files if
 ///     both poses rotate by quarter turns.
-/// keep : float
+/// min_gap : float
 ///     A minimum gap, a length. The bodies, shrunk by half the tolerance each, stop when their distance falls
 ///     to it.
 /// ignore_start_overlaps : bool

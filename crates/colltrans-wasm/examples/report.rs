@@ -11,7 +11,7 @@ use std::path::Path;
 
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::report::html;
-use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Question, Watch};
+use colltrans_assembly::{AnalysisRequest, Assembly, Bodies, Fit, Part, Piece, Watch};
 use colltrans_assembly_io::read::{ReadOptions, read};
 use glam::DAffine3;
 
@@ -28,13 +28,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         _ => (assembly(files)?, false),
     };
     let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance.parse()?))?;
-    let mut findings = Question::default().ask(&bodies, watch)?;
+    let mut findings = AnalysisRequest::default().analyse(&bodies, watch)?;
     let name = assembly.parts()[0].name().to_owned();
     if is_manifest {
         let options = MapOptions::default().with_samples(42).with_border(0.1);
         findings.maps.push((name.clone(), RemovalMap::new(&bodies, &[0], &[], options, watch)?));
     }
-    Ok(std::fs::write(target, html::page(&findings, if is_manifest { &name } else { "parts" }))?)
+    Ok(std::fs::write(
+        target,
+        html::report_page(&findings, if is_manifest { &name } else { "parts" }),
+    )?)
 }
 
 fn assembly(files: &[String]) -> Result<Assembly, Box<dyn Error>> {

@@ -22,6 +22,6 @@ impl FeatureHighlight {
     /// Converts a feature of a body.
     pub(crate) fn from_feature<B: colltrans::Body>(feature: Feature, body: &B) -> Self {
         let face = if let Feature::Face(face) = feature { Some(face) } else { None };
-        Self { vertices: feature.own_vertices(body), face }
+        Self { vertices: feature.vertex_positions(body), face }
     }
 }

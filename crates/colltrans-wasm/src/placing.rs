@@ -5,7 +5,7 @@ use std::path::Path;
 
 use colltrans::solid::AsSolid;
 use colltrans::{ConvexPolyhedron, QueryError, Solid};
-use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused};
+use colltrans_mesh::body::{self, BodyError, BodyOptions, Loaded};
 use colltrans_mesh::{Format, Mesh};
 use serde::Deserialize;
 use serde_json::json;
@@ -34,7 +34,7 @@ impl Part {
     /// Builds a body from a mesh.
     fn from_mesh(mesh: &Mesh, take: &str) -> Result<Self, String> {
         let options = BodyOptions::default().with_hull(take == "hull").with_open(take == "open");
-        let words = |error: Refused| error.to_string();
+        let words = |error: BodyError| error.to_string();
         match take {
             "convex" | "hull" => body::convex(mesh, &options).map(Self::Convex).map_err(words),
             "solid" | "open" => body::solid(mesh, &options).map(Self::Solid).map_err(words),
@@ -65,7 +65,7 @@ impl Places {
         let body = &mut self.0[slot as usize];
         *body = None;
         let path = Path::new(name);
-        let format = Format::of_path(path).map_err(|error| error.to_string())?;
+        let format = Format::from_path(path).map_err(|error| error.to_string())?;
         let mesh = colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
         *body = Some(Part::from_mesh(&mesh, take)?);
         Ok(Answer::from_facts(&json!({ "placed": true })))

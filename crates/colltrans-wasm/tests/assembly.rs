@@ -97,7 +97,7 @@ fn map_equals_library_map() {
     for k in 0..642 {
         let d: Vec<f32> = map.sphere.directions[k].as_vec3().to_array().to_vec();
         assert_eq!(numbers[3 * k..3 * k + 3], d);
-        assert_eq!(numbers[3 * count + k], map.rooms[k].distance() as f32);
+        assert_eq!(numbers[3 * count + k], map.travels[k].safe_distance() as f32);
     }
     let ways = ["regions", "isolated"].map(|key| told[key].as_array().unwrap().len());
     assert!(told["free_share"].as_f64().unwrap() < 0.5 && ways[0] + ways[1] > 0, "{ways:?}");

@@ -12,15 +12,15 @@
 use std::path::Path;
 
 use colltrans::solid::StartOverlap;
-use colltrans_assembly::candidates::{Candidates, Choice, candidates};
-use colltrans_assembly::liaisons::{Liaison, liaisons};
+use colltrans_assembly::candidates::{CandidateOptions, Candidates, find_candidates};
+use colltrans_assembly::liaisons::{Liaison, find_liaisons};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
-use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::matrix::ContactMatrix;
 use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::report::html;
-use colltrans_assembly::sphere::unit;
+use colltrans_assembly::sphere::normalized_direction;
 use colltrans_assembly::start::Start;
-use colltrans_assembly::{Assembly, Bodies, Findings, Fit, Part, Piece, Question, Watch};
+use colltrans_assembly::{Analysis, AnalysisRequest, Assembly, Bodies, Fit, Part, Piece, Watch};
 use colltrans_assembly_io::read;
 use colltrans_mesh::Format;
 use glam::{DAffine3, DVec3};
@@ -99,7 +99,7 @@ impl State {
             self.unit = read.unit().map(str::to_owned);
             self.gathered.extend_from_slice(read.parts());
         } else {
-            let format = Format::of_path(path).map_err(|error| error.to_string())?;
+            let format = Format::from_path(path).map_err(|error| error.to_string())?;
             let mesh =
                 colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
             let stem = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
@@ -159,8 +159,9 @@ impl State {
         let message = |error: colltrans_assembly::AssemblyError| error.to_string();
         let bodies = Bodies::new(set.assembly, fit).map_err(message)?;
         let start = Start::new(&bodies, watch).map_err(message)?;
-        let touching: Vec<Liaison> = liaisons(&bodies, watch).map_err(message)?;
-        let candidates = candidates(&bodies, &touching, &Choice::default()).map_err(message)?;
+        let touching: Vec<Liaison> = find_liaisons(&bodies, watch).map_err(message)?;
+        let candidates =
+            find_candidates(&bodies, &touching, &CandidateOptions::default()).map_err(message)?;
         let answer = answers::fit_answer(&bodies, default.tolerance(), &start, &touching);
         let overlaps = if ignore { StartOverlap::Ignore } else { StartOverlap::Refuse };
         set.fitted = Some(Fitted { bodies, start: overlaps, candidates, plan: None });
@@ -174,9 +175,10 @@ impl State {
 
     fn along(&mut self, direction: [f64; 3]) -> Result<Answer, Refusal> {
         let Fitted { bodies, start, .. } = self.fitted()?;
-        let d = unit(DVec3::from_array(direction)).map_err(|error| error.to_string())?;
+        let d = normalized_direction(DVec3::from_array(direction))
+            .map_err(|error| error.to_string())?;
         let all = vec![true; bodies.len()];
-        let matrix = Matrix::new(bodies, &[d], &all, *start, Watch::default());
+        let matrix = ContactMatrix::new(bodies, &[d], &all, *start, Watch::default());
         Ok(answers::blocking_answer(&matrix.map_err(|error| error.to_string())?, bodies))
     }
 
@@ -201,7 +203,7 @@ impl State {
 
     fn plan(&mut self) -> Result<Answer, Refusal> {
         let Fitted { bodies, start, plan, .. } = self.fitted()?;
-        let found = plan_options(*start).ask(bodies, Watch::default());
+        let found = plan_options(*start).analyse(bodies, Watch::default());
         let found = found.map_err(|error| error.to_string())?;
         let answer = answers::plan_answer(bodies, &found.plan, found.matrix.directions().len());
         *plan = Some(found.plan);
@@ -214,14 +216,14 @@ impl State {
         let Some(plan) = plan.clone() else {
             return Err("there is no plan yet; ask for a plan first".to_owned().into());
         };
-        let found = plan_options(*start).look(bodies, Watch::default());
-        let found = Findings { plan, ..found.map_err(|error| error.to_string())? };
-        let page = html::page(&found, title).into_bytes();
+        let found = plan_options(*start).analyse_without_plan(bodies, Watch::default());
+        let found = Analysis { plan, ..found.map_err(|error| error.to_string())? };
+        let page = html::report_page(&found, title).into_bytes();
         Ok(Answer { numbers: page, ..Answer::from_facts(&json!({ "title": title })) })
     }
 }
 
 /// Returns the options of a plan.
-fn plan_options(start: StartOverlap) -> Question {
-    Question::default().with_options(PlanOptions::default().with_start(start))
+fn plan_options(start: StartOverlap) -> AnalysisRequest {
+    AnalysisRequest::default().with_options(PlanOptions::default().with_start(start))
 }

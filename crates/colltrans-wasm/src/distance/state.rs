@@ -66,15 +66,15 @@ impl State {
 }
 
 fn convex(pair: &Pair<'_>) -> Result<PairAnswer, QueryError> {
-    let distance = PairQuestion::Distance.ask(pair)?.record(pair);
+    let distance = PairQuestion::Distance.answer(pair)?.record(pair);
     let meets = distance.outcome() == Ending::Meeting;
-    let depth = meets.then(|| PairQuestion::Depth.ask(pair)).transpose()?;
+    let depth = meets.then(|| PairQuestion::Depth.answer(pair)).transpose()?;
     Ok(PairAnswer { distance, depth: depth.map(|depth| depth.record(pair)) })
 }
 
 fn solids(pair: &Pair<'_, Solid>) -> Result<PairAnswer, QueryError> {
-    let distance = PairQuestion::Distance.ask_solids(pair)?.record(pair)?;
+    let distance = PairQuestion::Distance.answer_solids(pair)?.record(pair)?;
     let meets = distance.outcome() == Ending::Meeting;
-    let depth = meets.then(|| PairQuestion::Depth.ask_solids(pair)?.record(pair)).transpose()?;
+    let depth = meets.then(|| PairQuestion::Depth.answer_solids(pair)?.record(pair)).transpose()?;
     Ok(PairAnswer { distance, depth })
 }

@@ -1,6 +1,6 @@
 //! The recording of a search as the page reads it.
 
-use colltrans::observe::{Event, Recording, Touch};
+use colltrans::observe::{Event, Recording, SectionContact};
 use colltrans::{
     Cast, ConvexPolyhedron, Focus, Outcome, Pose, QueryError, Solver, Steps, Tracker, cta,
 };
@@ -72,7 +72,7 @@ fn record_search(cast: &Cast, before: Option<&Cast>) -> Result<Found, QueryError
 fn region(before: &Cast, cast: &Cast) -> Result<Option<Around>, QueryError> {
     let outcome = before.first_contact_observed(&mut Recording::default())?;
     let Outcome::Contact(contact) = outcome else { return Ok(None) };
-    let points = contact.points(before);
+    let points = contact.witness_points(before);
     let back = |pose: Pose, v: DVec3| pose.matrix().transpose() * (v - pose.translation());
     let p = back(before.moving_pose(), points.on_moving);
     let q = back(before.fixed_pose(), points.on_fixed);
@@ -104,19 +104,19 @@ fn event_values(seen: &Recording) -> Vec<Value> {
 }
 
 /// Returns the name of a kind of contact of two sections.
-fn touch_name(touch: Touch) -> &'static str {
+fn touch_name(touch: SectionContact) -> &'static str {
     match touch {
-        Touch::Edges => "edges",
-        Touch::Vertex => "vertex",
-        Touch::Separated => "separated",
-        Touch::Hidden => "hidden",
+        SectionContact::Edges => "edges",
+        SectionContact::Vertex => "vertex",
+        SectionContact::Separated => "separated",
+        SectionContact::Hidden => "hidden",
     }
 }
 
 /// Converts an event to JSON; `None` for events that the page does not show.
 fn event_value(event: &Event) -> Option<Value> {
     Some(match event {
-        Event::Begun(frame) => {
+        Event::SearchStarted(frame) => {
             json!({ "begun": frame.world_from_shadow.to_cols_array_2d() })
         }
         Event::Support(support) => json!({

@@ -57,7 +57,7 @@ impl State {
             other => return Err(format!("a body used as {other} has no sections")),
         };
         let path = Path::new(name);
-        let format = Format::of_path(path).map_err(|error| error.to_string())?;
+        let format = Format::from_path(path).map_err(|error| error.to_string())?;
         let mesh = colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
         let made = body::convex(&mesh, &options).map_err(|error| error.to_string())?;
         *place = Some(made.body);

@@ -57,7 +57,9 @@ impl Kind {
     fn motion_from(&self, start: Pose) -> Result<Motion, String> {
         let v = DVec3::from_array;
         let motion = match *self {
-            Self::Turn { point, axis, angle } => Motion::turn(start, v(point), v(axis), angle),
+            Self::Turn { point, axis, angle } => {
+                Motion::rotation_about(start, v(point), v(axis), angle)
+            }
             Self::Screw { point, axis, angle, rise } => {
                 Motion::screw(start, v(point), v(axis), angle, rise)
             }
@@ -120,7 +122,7 @@ impl State {
 impl Request {
     fn motions(&self) -> Result<[Motion; 2], String> {
         let motion = |kind: Option<&Kind>, start: Pose| {
-            kind.map_or(Ok(Motion::still(start)), |kind| kind.motion_from(start))
+            kind.map_or(Ok(Motion::at_rest(start)), |kind| kind.motion_from(start))
         };
         let (moving, fixed) = (pose(self.moving_pose, "moving")?, pose(self.fixed_pose, "fixed")?);
         Ok([
@@ -135,13 +137,13 @@ impl Request {
         [moves, other]: &'a [Motion; 2],
     ) -> Result<Query<'a>, String> {
         let query = if let (Part::Convex(p), Part::Convex(q)) = (moving, fixed) {
-            let cast = MotionCast::new(p.body.along(moves), q.body.along(other));
+            let cast = MotionCast::new(p.body.with_motion(moves), q.body.with_motion(other));
             match self.tolerance {
                 Some(_) if self.min_gap > 0.0 => {
                     return Err("a gap and a tolerance are both given; convex bodies accept only one of them".into());
                 }
-                Some(depth) => cast.and_then(|cast| cast.tolerating(depth)),
-                None => cast.and_then(|cast| cast.keeping(self.min_gap)),
+                Some(depth) => cast.and_then(|cast| cast.with_tolerance(depth)),
+                None => cast.and_then(|cast| cast.with_min_gap(self.min_gap)),
             }
             .map(Query::Convex)
         } else {
@@ -149,10 +151,10 @@ impl Request {
             moving
                 .solid()
                 .and_then(|p| {
-                    let (p, q) = (p.along(moves), fixed.solid()?.along(other));
+                    let (p, q) = (p.with_motion(moves), fixed.solid()?.with_motion(other));
                     between_motions(p, q, precisions, self.tolerance)
                 })
-                .and_then(|cast| cast.keeping(self.min_gap))
+                .and_then(|cast| cast.with_min_gap(self.min_gap))
                 .map(Query::Solid)
         };
         query.map_err(|error| error.to_string())
@@ -171,7 +173,12 @@ fn first_contact(query: &Query<'_>) -> Result<Answer, String> {
     Ok(Answer::from_facts(&match query {
         Query::Convex(cast) => {
             let outcome = cast.first_contact().map_err(message)?;
-            motion_answer("convex", MotionRecord::of(&outcome, cast), &outcome, cast.bodies())
+            motion_answer(
+                "convex",
+                MotionRecord::from_outcome(&outcome, cast),
+                &outcome,
+                cast.bodies(),
+            )
         }
         Query::Solid(cast) => {
             let outcome = cast.first_contact().map_err(message)?;
@@ -213,7 +220,7 @@ fn prove_contact(query: &Query<'_>) -> Result<Answer, String> {
         Query::Convex(cast) => {
             let outcome = cast.first_contact().map_err(message)?;
             let proof = outcome.proof();
-            (cast.verify(proof), proof.planes())
+            (cast.verify(proof), proof.plane_count())
         }
         Query::Solid(cast) => {
             let outcome = cast.certified_first_contact().map_err(message)?;

@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use colltrans::solid::ShellKind;
 use colltrans::{Aabb, ConvexPolyhedron, Solid};
-use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, Take};
+use colltrans_mesh::body::{self, BodyError, BodyKind, BodyOptions, Loaded, Note};
 use colltrans_mesh::{Format, Mesh, sides};
 use glam::DVec3;
 use serde_json::json;
@@ -94,23 +94,27 @@ struct Drawn {
 /// Reads a mesh file.
 pub(crate) fn read_mesh(name: &str, file: Vec<u8>) -> Result<Mesh, Refusal> {
     let path = Path::new(name);
-    let format = Format::of_path(path).map_err(|error| error.to_string())?;
+    let format = Format::from_path(path).map_err(|error| error.to_string())?;
     colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string().into())
 }
 
 /// Builds a body from a mesh, and the answer with its drawing.
-pub(crate) fn build_body(mesh: &Mesh, name: &str, take: Take) -> Result<(Part, Answer), Refusal> {
+pub(crate) fn build_body(
+    mesh: &Mesh,
+    name: &str,
+    take: BodyKind,
+) -> Result<(Part, Answer), Refusal> {
     let options =
-        BodyOptions::default().with_hull(take == Take::Hull).with_open(take == Take::Open);
+        BodyOptions::default().with_hull(take == BodyKind::Hull).with_open(take == BodyKind::Open);
     match take {
-        Take::Convex | Take::Hull => {
+        BodyKind::Convex | BodyKind::Hull => {
             let loaded = body::convex(mesh, &options).map_err(|error| refusal(name, &error))?;
             let Loaded { body, notes, .. } = loaded;
             let answer =
                 body_answer(&convex_facts(&body, &notes), body.vertices(), &hull_drawing(&body));
             Ok((Part::Convex(Hull { body, solid: OnceLock::new() }), answer))
         }
-        Take::Solid | Take::Open => {
+        BodyKind::Solid | BodyKind::Open => {
             let loaded = body::solid(mesh, &options).map_err(|error| refusal(name, &error))?;
             let Loaded { body, precision, notes } = loaded;
             let answer =
@@ -121,22 +125,22 @@ pub(crate) fn build_body(mesh: &Mesh, name: &str, take: Take) -> Result<(Part, A
 }
 
 /// Returns the name of a way to use a mesh, as in questions.
-fn take_name(take: Take) -> &'static str {
+fn take_name(take: BodyKind) -> &'static str {
     match take {
-        Take::Convex => "convex",
-        Take::Hull => "hull",
-        Take::Solid => "solid",
-        Take::Open => "open",
+        BodyKind::Convex => "convex",
+        BodyKind::Hull => "hull",
+        BodyKind::Solid => "solid",
+        BodyKind::Open => "open",
     }
 }
 
-fn refusal(name: &str, error: &Refused) -> Refusal {
-    let instead = error.instead().iter().map(|take| take_name(*take)).collect();
+fn refusal(name: &str, error: &BodyError) -> Refusal {
+    let instead = error.alternatives().iter().map(|take| take_name(*take)).collect();
     Refusal { instead, ..format!("{name}: {error}").into() }
 }
 
 fn bounds(vertices: &[DVec3]) -> [[f64; 3]; 2] {
-    let Aabb { low, high } = Aabb::of_points(vertices.iter().copied());
+    let Aabb { low, high } = Aabb::from_points(vertices.iter().copied());
     [low.to_array(), high.to_array()]
 }
 
@@ -162,7 +166,8 @@ fn solid_facts(body: &Solid, notes: &[Note]) -> Facts {
         edges: 0,
         dimension: 3,
         closed: body.is_closed(),
-        shells: (!body.is_closed()).then(|| ShellKind::ALL.map(|kind| body.report().count(kind))),
+        shells: (!body.is_closed())
+            .then(|| ShellKind::ALL.map(|kind| body.report().shell_count(kind))),
         volume: body.volume(),
         bounds: bounds(body.vertices()),
         notes: note_texts(notes),

@@ -40,7 +40,7 @@ pub(crate) fn cast_answer(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Ref
     Ok(Answer::from_facts(&CastAnswer {
         kind: "convex",
         record: CastRecord::of_range(&range, &cast).into(),
-        clearance: Some(ClearanceRecord::of(&clearance, &cast)),
+        clearance: Some(ClearanceRecord::from_clearance(&clearance, &cast)),
         lit: first.ok().map(|contact| {
             let Features { moving, fixed } = contact.features(&cast);
             ContactHighlight {

@@ -4,7 +4,7 @@
 //! would add a third to the download.
 
 use colltrans::{Solver, cta};
-use colltrans_mesh::body::Take;
+use colltrans_mesh::body::BodyKind;
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -36,7 +36,7 @@ pub(crate) struct Load {
     pub(crate) slot: Slot,
     /// The file name, whose extension selects the format.
     pub(crate) name: String,
-    pub(crate) take: Take,
+    pub(crate) take: BodyKind,
 }
 
 /// Two placed bodies and a direction. Poses are `x,y,z,qx,qy,qz,qw`.
@@ -90,10 +90,10 @@ impl Read for Fields<'_> {
             other => return Err(format!("unknown body {other}; known bodies: moving, fixed")),
         };
         let take = match self.text("take")? {
-            "convex" => Take::Convex,
-            "hull" => Take::Hull,
-            "solid" => Take::Solid,
-            "open" => Take::Open,
+            "convex" => BodyKind::Convex,
+            "hull" => BodyKind::Hull,
+            "solid" => BodyKind::Solid,
+            "open" => BodyKind::Open,
             other => {
                 return Err(format!(
                     "unknown kind of body {other}; known kinds: convex, hull, solid, open"

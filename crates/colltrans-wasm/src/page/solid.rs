@@ -3,7 +3,7 @@
 use colltrans::record::SolidClearanceRecord;
 use colltrans::solid::{SolidCast, StartOverlap};
 use colltrans::{Cast, Clearance, Solid};
-use colltrans_mesh::body::between;
+use colltrans_mesh::body::cast_between;
 use glam::DVec3;
 
 use super::body::{Facets, Part};
@@ -31,7 +31,7 @@ pub(crate) fn cast_answer([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<An
     }
     Ok(Answer::from_facts(&CastAnswer {
         kind: "solid",
-        record: SolidClearanceRecord::of(&clearance, cast.exit(), &cast).into(),
+        record: SolidClearanceRecord::from_clearance(&clearance, cast.exit(), &cast).into(),
         clearance: None,
         lit,
         proof,
@@ -50,6 +50,6 @@ pub(crate) fn cast_of<'a>(
     let precisions = [moving.precision, fixed.precision];
     let start = if pair.ignore_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
     let (moving, fixed) = (moving.body.at(moving_pose), fixed.body.at(fixed_pose));
-    let cast = between(moving, fixed, direction, precisions, pair.tolerance, start);
+    let cast = cast_between(moving, fixed, direction, precisions, pair.tolerance, start);
     Ok(cast.map_err(|error| error.to_string())?)
 }

@@ -1,7 +1,7 @@
 //! The bodies in use, and the questions about them.
 
 use colltrans_mesh::Mesh;
-use colltrans_mesh::body::Take;
+use colltrans_mesh::body::BodyKind;
 
 use super::body::{self, Part};
 use super::question::{Load, Question, Slot};
@@ -54,7 +54,7 @@ impl Place {
         };
         match body::build_body(&file.mesh, &file.name, load.take) {
             Ok((part, answer)) => {
-                if load.take == Take::Convex {
+                if load.take == BodyKind::Convex {
                     // No other body will be built from the mesh.
                     file.mesh = Mesh::default();
                 }

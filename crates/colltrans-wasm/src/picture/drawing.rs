@@ -4,7 +4,7 @@
 
 use std::collections::HashSet;
 
-use colltrans_picture::{Depth, Facet, Frame, Page, Raster, escaped, ordered};
+use colltrans_picture::{Depth, Facet, Frame, Page, Raster, escape_xml, sort_back_to_front};
 use glam::{DVec2, DVec3};
 
 use super::scene::{Area, Line, Scene, Segment, Styles};
@@ -25,20 +25,20 @@ pub(crate) fn draw_scene(scene: &Scene) -> String {
     lines.draw(&mut page, |style| !style.below);
     draw_areas(&mut page, scene, window, |area| area.above);
     for word in words {
-        let look = format!(r#"{WORDS} fill="{}""#, escaped(text));
+        let look = format!(r#"{WORDS} fill="{}""#, escape_xml(text));
         page.text(DVec2::from_array(word.at), "middle", &look, &word.text);
     }
-    page.alone(size, ground)
+    page.standalone(size, ground)
 }
 
 /// Draws areas. Neighbours in depth order with the same style become one path.
 fn draw_areas(page: &mut Page, scene: &Scene, window: Frame, some: impl Fn(&Area) -> bool) {
     let style = |facet: &Facet| &scene.styles.areas[facet.style as usize];
     let facets = scene.triangles.iter().map(|(facet, _)| *facet).filter(|f| some(style(f)));
-    let painted = ordered(facets.collect(), window, Depth::Inverse, scene.styles.slack);
+    let painted = sort_back_to_front(facets.collect(), window, Depth::Inverse, scene.styles.slack);
     for same in painted.chunk_by(|a, b| a.style == b.style) {
         let Area { fill, opacity, .. } = style(&same[0]);
-        let fill = escaped(fill);
+        let fill = escape_xml(fill);
         let look = if same[0].opaque {
             format!(r#"fill="{fill}" stroke="{fill}" stroke-width="{RIM}""#)
         } else {
@@ -87,7 +87,8 @@ impl<'a> Lines<'a> {
                 Some(dash) => format!(r#"stroke-linecap="butt" stroke-dasharray="{dash:.2}""#),
                 None => r#"stroke-linecap="round""#.to_owned(),
             };
-            let look = format!(r#"stroke="{}" stroke-opacity="{opacity}" {ends}"#, escaped(colour));
+            let look =
+                format!(r#"stroke="{}" stroke-opacity="{opacity}" {ends}"#, escape_xml(colour));
             page.lines(&look, same.iter().flat_map(|segment| self.visible_parts(segment)));
         }
     }

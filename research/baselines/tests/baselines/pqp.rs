@@ -333,7 +333,7 @@ fn invalid_soups_are_rejected() {
     assert_eq!(refused(&nan, &[[0, 1, 2]]), Some(SoupError::NotFinite { vertex: 1 }));
     let far = [DVec3::ZERO, DVec3::X, DVec3::Y * 1e100];
     assert_eq!(refused(&far, &[[0, 1, 2]]), Some(SoupError::OutOfRange { vertex: 2 }));
-    assert!(unknown.to_string().contains("triangle 1 names vertex 7"));
+    assert!(unknown.to_string().contains("triangle 1 refers to vertex 7"));
 }
 
 #[test]

@@ -95,7 +95,7 @@ def test_columns_are_concatenated() -> None:
     assert joined[2].query.direction.tolist() == [0, 0, 1]
     with pytest.raises(InputError, match="different classes: ClearanceColumns, ContactColumns"):
         concatenate([whole, clearance_many(CUBE, CUBE, AHEAD)])
-    with pytest.raises(InputError, match="not nothing"):
+    with pytest.raises(InputError, match="different classes: nothing"):
         concatenate([])
 
 

@@ -44,7 +44,7 @@ def test_a_robot_gives_its_joints_and_bodies() -> None:
     assert ARM.links == ["base", "upper", "fore", "tool"]
     assert ARM.joints == ["shoulder", "elbow", "reach"]
     assert ARM.limits == {"shoulder": (-3, 3), "reach": (0, 0.1)}
-    assert "around it" in ARM.notes[0]
+    assert "circumscribed polyhedron" in ARM.notes[0]
     assert repr(ARM) == 'Robot("arm", 4 links, 3 joints)'
 
 
@@ -156,7 +156,7 @@ def test_invalid_arguments_are_refused(tmp_path: Path) -> None:
     refused(InputError, "path: rows have 2 values, expected 3, one for each joint", ROWS[:, :2])
     refused(InputError, r"path: an array of shape \(3,\), not \(N, joints\)", [0, 0, 0])
     refused(InputError, "path: not an array of numbers", [["a", "b", "c"]])
-    refused(InputError, "path: .*none.csv: cannot be read", tmp_path / "none.csv")
+    refused(InputError, "path: cannot read .*none.csv", tmp_path / "none.csv")
     refused(InputError, "columns: 2 names for rows of 3 values", ROWS, columns=["a", "b"])
     refused(
         InputError,

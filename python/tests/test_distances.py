@@ -263,7 +263,7 @@ def test_files_of_queries_ask_distances(tmp_path: Path) -> None:
         table, bulk.Bodies(folder=str(tmp_path), hull=True), bulk.Options("depth")
     )
     assert answers["upper"][0].as_py() == told["depth"]["upper"][0]
-    with pytest.raises(InputError, match="unknown column 'length'"):
+    with pytest.raises(InputError, match="the queries have no column 'length'"):
         bulk.answer_table(table, bulk.Bodies(folder=str(tmp_path)), bulk.Options("within"))
 
 

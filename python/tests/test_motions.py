@@ -291,7 +291,7 @@ def test_rows_of_different_motions_equal_single_answers() -> None:
     more = motion_many(CUBE, CUBE, turn, fixed_pose=[0, 0, -1], tolerance=[1e-9, 1e-6])
     assert more.counts() == {"free": 2}
     wrong = motion_many(CUBE, CUBE, turn, fixed_pose=[0, 0, -1], tolerance=[1e-9, 1e-6], min_gap=1)
-    assert wrong.counts() == {"error": 2} and "either" in wrong.errors[0]
+    assert wrong.counts() == {"error": 2} and "only one of them" in wrong.errors[0]
     mixed = motion_many([BOLT, CUBE], PLATE, turn, moving_pose=[0, 0, 30])
     assert mixed.counts() == {"free": 2}
 

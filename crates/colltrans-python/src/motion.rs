@@ -412,7 +412,7 @@ impl MotionCast {
 }
 
 pub(crate) const EITHER: &str =
-    "keep and tolerance are both given; convex bodies accept only one of them";
+    "min_gap and tolerance are both given; convex bodies accept only one of them";
 
 /// Builds the cast of two convex bodies.
 pub(crate) fn convex_cast<'a>(

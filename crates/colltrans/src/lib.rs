@@ -133,7 +133,7 @@
 //!
 //! # Features
 //!
-//! `solid`, `motion`, `removal`, `scene` and `min_gap` (casts with a minimum gap) are on by default. Without
+//! `solid`, `motion`, `removal`, `scene` and `min-gap` (casts with a minimum gap) are on by default. Without
 //! them the crate is the convex core alone, and of the project's crates only `colltrans-kernel` and
 //! `colltrans-convex` are compiled. `serde` enables `solid`, `motion`, `removal` and `scene`; `json` enables
 //! `serde`.

@@ -247,7 +247,7 @@ def test_invalid_arguments_are_refused() -> None:
     with pytest.raises(InputError, match="by"):
         Motion.slide([1, 2])
     slide = Motion.slide([1, 0, 0])
-    with pytest.raises(QueryError, match="either min_gap or tolerance"):
+    with pytest.raises(QueryError, match="min_gap and tolerance are both given"):
         first_contact(CUBE, CUBE, slide, min_gap=1, tolerance=1)
     with pytest.raises(QueryError, match="-1"):
         first_contact(CUBE, CUBE, slide, min_gap=-1)

@@ -1,7 +1,7 @@
 //! Draws bodies and answers as SVG, for the command line and for reports.
 //!
 //! [`View`] projects the scene. A [`Raster`] of depths determines the visible surfaces, and the visible parts
-//! of the edges (module [`edges`](mod@edges)). [`sort_back_to_front`] sorts facets so that they can be painted back to front. [`Page`] writes areas,
+//! of the edges (module `edges`). [`sort_back_to_front`] sorts facets so that they can be painted back to front. [`Page`] writes areas,
 //! lines and text. [`Paint`] has the colours of the moving and of the fixed body.
 
 mod edges;

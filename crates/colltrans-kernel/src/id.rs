@@ -1,12 +1,13 @@
 //! Typed numbers of vertices, faces and obstacles.
 //!
-//! A body renumbers its vertices and faces, and the input has its own numbers. Mappings between the two
-//! numberings, and answers, use these types. Plain `u32` are used where the meaning is unambiguous:
+//! A body renumbers its vertices and faces, so that they differ from the numbers of the input. Answers, and
+//! mappings between the two numberings, use these types. These functions use plain `u32`:
 //!
-//! - corners that bodies are built from: positions in the vertices passed with them,
-//! - corners that bodies are drawn from (`Solid::triangles`, `ConvexPolyhedron::face_vertices`), positions of
-//!   triangles, faces passed to `ConvexPolyhedron`, and walks over edges (`HalfEdge`): numbers of the body,
-//! - `Solid::face_numbers`: values of `FaceId`.
+//! - Constructors of bodies: a corner of a face is an index into the vertices passed to the same constructor.
+//! - `Solid::triangles`, `ConvexPolyhedron::face_vertices` and `HalfEdge`: vertices, faces and half-edges have
+//!   the numbers of the body.
+//! - Methods of `ConvexPolyhedron` with a parameter `face` or `vertex`: it is the number in the body.
+//! - `Solid::face_numbers`: the values are those of `FaceId`.
 
 use std::fmt;
 

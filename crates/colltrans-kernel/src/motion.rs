@@ -2,14 +2,15 @@
 //!
 //! A motion is a sequence of *pieces*. Notation for a piece that starts at the time `s`:
 //!
-//! - `R`, `T` are the rotation and the translation of the pose at `s`. `v` is the velocity of an axis along
-//!   `k`.
+//! - `R`, `T` are the rotation and the translation of the pose at `s`.
+//! - `k` is the direction of an axis, `v` the velocity of this axis, and `w` the angular velocity about it.
 //! - `E(t)` is the rotation by `w (t - s)` about `k`. The *arm* `a` leads from a point of the axis to `T`.
 //! - The body frame has the rotation `E(t) R` and the translation `T + v (t - s) + (E(t) - 1) a`.
 //!
 //! The numbers `s, R, T, a, k, w, v` define a motion in exact arithmetic, as if the length of `k` were 1.
-//! `Piece::error_bound` bounds the rounding error of computed points. In a motion of [`Motion::through_poses`], a piece starts
-//! where the previous one ends, up to rounding and the defects of the matrices. Deserialising does not check this.
+//! `Piece::error_bound` bounds the rounding error of computed points. In a motion of [`Motion::through_poses`], a
+//! piece starts where the previous one ends, up to rounding and the defects of the matrices. Deserialising does not
+//! check this.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -200,8 +201,8 @@ impl Motion {
     /// Returns the screw motions from each pose to the next one. All of them have the same duration.
     ///
     /// # Errors
-    /// [`MotionError::NoPoses`] if there are no poses. [`MotionError::Number`] if an axis or a displacement
-    /// is out of range. [`MotionError::Angle`] if a rotation exceeds 1e5 radians per unit of time.
+    /// [`MotionError::NoPoses`] if there are no poses. [`MotionError::Number`] if the arm of an axis or a
+    /// velocity is out of range. [`MotionError::Angle`] if a rotation exceeds 1e5 radians per unit of time.
     #[inline]
     pub fn through_poses(poses: &[Pose]) -> Result<Self, MotionError> {
         let [first, ..] = poses else { return Err(MotionError::NoPoses) };

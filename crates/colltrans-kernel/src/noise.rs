@@ -150,9 +150,9 @@ impl Noise {
     }
 
     /// Returns the largest difference of the estimates of the upper and the lower bound that rounding can cause, as a
-    /// length along `n`. It does not include [`Self::raised`], [`Self::lowered`] and [`Self::beyond`]. `across` is
-    /// the length of the part of `n` perpendicular to the direction, `widening` the longer half-side of the
-    /// widening rectangle.
+    /// length along `n`. It does not include [`Self::lower_bound_margin`], [`Self::upper_bound_margin`] and
+    /// [`Self::max_excess`]. `across` is the length of the part of `n` perpendicular to the direction, `widening`
+    /// the longer half-side of the widening rectangle.
     #[inline]
     pub fn max_bound_gap(self, across: f64, widening: f64) -> f64 {
         // Depth at which the plane was accepted among ties.
@@ -186,8 +186,8 @@ impl Noise {
         MEAN_NOISES[1] * self.0
     }
 
-    /// Checks whether a minimum gap is at most eight noises. Rounding may leave no points that are provably
-    /// within such a gap. The size of this configuration includes the gap.
+    /// Checks whether a minimum gap is at most eight noises (a *slight* gap). Rounding may leave no points that are
+    /// provably within such a gap. The size of this configuration includes the gap.
     #[inline]
     pub fn is_below_noise(self, min_gap: f64) -> bool {
         min_gap <= MAX_SLIGHT_NOISES * self.0
@@ -213,8 +213,8 @@ impl Noise {
         HEIGHT_NOISES[1] * self.0
     }
 
-    /// Returns the minimum distance of an upper bound along `n` above the weighted mean of the corners, if a
-    /// check computes the mean without rounding.
+    /// Returns the margin by which a check raises the proven upper bound along `n`, which it computes nearly
+    /// without rounding. A certificate whose upper bound is lower is rejected.
     #[inline]
     pub fn checked_upper_bound_margin(self) -> f64 {
         (UPPER_BOUND_NOISES - 1.0) * self.0

@@ -279,9 +279,11 @@ fn sign_by_doubles(
     sign_from_shadows(displacement, base, [Ordering::Greater, sign])
 }
 
-/// Returns the sign from the shadow of the displacement and the shadow of one of its ends. `signs[0]` is the
-/// sign of `d_m` if the shadows lack this factor, and `signs[1]` is the sign of `d_m` if they contain it. The
-/// other entry is `Greater`. `None` if the errors leave the sign uncertain.
+/// Returns the sign of [`perturbed_orientation`] from the shadows of the displacement and of one of its ends. `None`
+/// if the errors leave the sign uncertain.
+///
+/// `signs` are the sign of `d_m` and `Greater`, in this order for shadows that were divided by `d_m`, in the opposite
+/// order for exact shadows.
 #[inline(always)]
 fn sign_from_shadows(
     displacement: [Double; 2],

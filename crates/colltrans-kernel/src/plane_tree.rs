@@ -17,8 +17,8 @@ use crate::visit_counter;
 
 /// Maximum number of planes of a leaf.
 const MAX_LEAF_PLANES: usize = 8;
-/// Rounding error of a bound and a depth, relative to the size of coordinates: some ten roundings of `2^-53`
-/// each.
+/// Bound on the rounding errors of a bound and a depth together, relative to the size of coordinates. Each of the
+/// two has about ten roundings of `2^-53`; the constant is 90 of them.
 const RELATIVE_ROUNDING: f64 = 1e-14;
 
 /// A tree over planes.

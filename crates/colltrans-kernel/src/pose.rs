@@ -115,8 +115,8 @@ impl Pose {
     /// `|length - 1|`, otherwise `None`.
     ///
     /// # Errors
-    /// [`PoseError::NotARotation`] if the length differs by more than 0.02. [`PoseError::Translation`] if the
-    /// translation is not finite or out of range.
+    /// [`PoseError::NotARotation`] if the length is not a number or differs from 1 by more than 0.02.
+    /// [`PoseError::Translation`] if the translation is not finite or out of range.
     ///
     /// ```
     /// use colltrans::Pose;
@@ -145,8 +145,8 @@ impl Pose {
     /// returns its defect, otherwise `None`.
     ///
     /// # Errors
-    /// [`PoseError::NotARotationMatrix`] if the matrix differs by more than 0.02. [`PoseError::Translation`]
-    /// if the translation is not finite or out of range.
+    /// [`PoseError::NotARotationMatrix`] if the matrix is not finite, is a reflection, or differs from a rotation by
+    /// more than 0.02. [`PoseError::Translation`] if the translation is not finite or out of range.
     #[inline]
     pub fn from_rounded_matrix(
         matrix: DMat3,

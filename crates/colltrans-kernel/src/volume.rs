@@ -14,8 +14,8 @@ use super::orientation::PointTerms;
 /// second of the third power of the size of the configuration.
 const DETERMINANT_ERROR: [f64; 2] = [64.0 * f64::EPSILON, f64::from_bits((1023 - 90) << 52)];
 
-/// Bound on the error of the determinant of rounded points, in the third power of the size: `3 * 9 u` for the
-/// points, and `8 u` for the determinant.
+/// Bound on the error of the determinant of rounded points, in multiples of the third power of the size. It is
+/// `64 u`, which covers `3 * 9 u` for the points and `8 u` for the determinant.
 const ROUNDED_POINT_ERROR: f64 = 32.0 * f64::EPSILON;
 
 /// Returns the exact sign of `det[a, b, c]`. It is positive if the three points are counter-clockwise as seen

@@ -9,7 +9,8 @@
 //! - Separation: `n` with `n.d = 0` and `min_Q n.q - max_P n.p > 0`.
 //!
 //! Rounding (see [`noise`]): a search rounds its bounds outwards. A check evaluates the plane nearly without
-//! rounding ([`height_bounds`](colltrans_kernel::height_bounds)), and accepts no lower bound or margin above the one that the plane proves.
+//! rounding ([`height_bounds`](colltrans_kernel::height_bounds)), and accepts no lower bound or margin above the one
+//! that the plane proves.
 
 use glam::DVec3;
 use thiserror::Error;
@@ -35,6 +36,10 @@ const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 /// `lower <= collision translation <= upper` holds exactly for the bodies as given: the convex hulls of their
 /// [`vertices`](crate::ConvexPolyhedron::vertices), placed by the nine matrix entries and the translation of
 /// their poses. Both bounds are rounded outwards.
+///
+/// For a cast with a minimum gap `g` (see [`Cast::with_min_gap`](crate::Cast::with_min_gap)), the bounds are those of
+/// the translation at which the distance falls to `g`. The plane proves
+/// `t >= (min_Q n.q - max_P n.p - g) / n.d`. The pairs prove `|sum w_i (q_i - p_i) - t d| <= g`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -46,7 +51,8 @@ pub struct Certificate {
     pub normal: DVec3,
     /// The lower bound that the plane proves, in multiples of the direction.
     pub lower: f64,
-    /// Three pairs of vertices whose differences `q - p` span a triangle that the line `t d` intersects.
+    /// Three pairs of vertices whose differences `q - p` span a triangle that the line `t d` intersects. With a
+    /// minimum gap, the distance of their weighted mean from `upper d` is at most the gap.
     pub pairs: [VertexPair; 3],
     /// Barycentric coordinates of the intersection in this triangle, not negative, with sum 1. The witness
     /// points are `sum w_i p_i` and `sum w_i q_i`.
@@ -64,7 +70,8 @@ pub struct Certificate {
     ///
     /// It is the sum of fifteen noises (see [the crate's introduction](crate#accuracy)) and of the bound on
     /// how far the bodies reach beyond their support points, divided by `normal . d`. If bodies that only
-    /// touch were widened laterally, it includes the effect of the widening.
+    /// touch were widened laterally, it includes the effect of the widening. A cast with a minimum gap may state more,
+    /// for example if the bodies pass each other at about the gap.
     pub rounding: f64,
 }
 

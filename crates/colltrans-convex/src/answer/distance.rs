@@ -162,7 +162,7 @@ pub struct Enclosure {
     pub pairs: Vec<VertexPair>,
     /// Triangles, counter-clockwise as seen from outside, as indices into `pairs`.
     pub triangles: Vec<[u32; 3]>,
-    /// For each triangle a unit vector along which all its corners are farther from the origin than the
-    /// depth.
+    /// For each triangle a unit vector along which all its corners are at least as far from the origin as the lower
+    /// bound of the depth.
     pub normals: Vec<DVec3>,
 }

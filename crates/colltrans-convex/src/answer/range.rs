@@ -81,8 +81,7 @@ impl ContactRange {
 pub struct DirectionalDepth {
     /// Distance by which the moving body must move back until the overlap ends, in multiples of the
     /// direction. If the clearance is [`Clearance::Overlapping`], it is not less than the true depth. Otherwise it
-    /// is 0, also for an overlap within the rounding error or the graze
-    /// tolerance.
+    /// is 0, also for an overlap within the rounding error or the graze tolerance.
     pub depth: f64,
     /// The clearance from which the depth is derived, with its proof.
     pub clearance: Clearance,
@@ -106,7 +105,8 @@ pub struct Intersection<B: Body = ConvexPolyhedron> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct CentralCast {
-    /// Direction of the cast, the unit vector between the centres.
+    /// Direction of the cast: the unit vector from the centre of the moving body to that of the fixed one, or the x
+    /// axis if the centres coincide.
     pub direction: DVec3,
     /// Outcome of the cast. A separation, or a first contact ahead, proves that the bodies do not meet.
     pub outcome: Outcome,

@@ -7,7 +7,7 @@ use derive_where::derive_where;
 use crate::body::{ConvexPolyhedron, Placed};
 use colltrans_kernel::motion::Motion;
 
-/// A body and its motion, from [`ConvexPolyhedron::along`](crate::ConvexPolyhedron::with_motion).
+/// A body and its motion, from [`ConvexPolyhedron::with_motion`](crate::ConvexPolyhedron::with_motion).
 #[derive(Debug)]
 #[derive_where(Clone)]
 pub struct Moving<'a, B = crate::ConvexPolyhedron> {

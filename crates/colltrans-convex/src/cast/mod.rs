@@ -3,8 +3,8 @@
 //! - [`Cast`] holds the setting and the options.
 //! - `multi_cast` derives the answers that need more than one cast.
 //! - `contact` computes details of a contact on request.
-//! - `sideways` measures overlaps of shadows.
-//! - `replay` saves a query as a file (feature `json`).
+//! - `shadow_overlap` bounds overlaps of shadows.
+//! - `case_file` saves a query as a file (feature `json`).
 
 #[cfg(feature = "json")]
 pub mod case_file;
@@ -283,10 +283,11 @@ impl<B: CastBody> Cast<'_, B> {
 
     /// Finds how far the moving body can move from its current pose.
     ///
-    /// Contacts behind and grazing slides do not block. Bodies that touch now, to within rounding, block each
-    /// other if the motion would make them overlap, but not if it separates them. The answer for solids does
-    /// not distinguish sliding along the other body, moving away from it and never meeting it. It includes a
-    /// separating plane if the bodies have one.
+    /// [`Clearance`] has three cases: the body is blocked, it is free, or the bodies overlap now. Contacts behind
+    /// and grazing slides do not block. Bodies that touch now, to within rounding, block each other if the motion
+    /// would make them overlap, but not if it separates them. A free solid may slide along the other body, move
+    /// away from it or never meet it: the answer does not distinguish these. It has a separating plane if one was
+    /// found.
     ///
     /// # Errors
     /// Returns [`QueryError::NotConverged`] if a search of convex bodies ends without an answer, and

@@ -26,7 +26,7 @@ pub enum QueryError {
         tolerance: f64,
     },
     /// The minimum gap is negative, not finite or larger than 2^200, or is not 0 and the library was built
-    /// without its feature `min_gap`.
+    /// without its feature `min-gap`.
     #[error(
         "the minimum gap {gap} is negative, not finite or larger than 2^200{}",
         if cfg!(feature = "min-gap") { "" } else { "; this build accepts only 0" }
@@ -158,14 +158,15 @@ pub enum Stalled {
     },
     /// The lowest plane that was found and the portal differ by more than rounding explains.
     ///
-    /// All numbers are estimates in multiples of the direction; neither bound is proven.
+    /// All numbers are in multiples of the direction. The bounds of a cast without a minimum gap are estimates, and
+    /// neither is proven. The bounds of a cast with a minimum gap are proven, and `upper` may be infinite.
     #[error(
         "the bounds did not converge: {lower} <= t <= {upper}, accepted difference: {tolerance:e}"
     )]
     Gap {
-        /// Translation at which the line intersects the plane.
+        /// Translation at which the line intersects the plane; with a minimum gap, the proven lower bound.
         lower: f64,
-        /// Translation at which the line intersects the portal.
+        /// Translation at which the line intersects the portal; with a minimum gap, the proven upper bound.
         upper: f64,
         /// The largest difference that would have been accepted.
         tolerance: f64,

@@ -75,7 +75,7 @@ pub fn check_length(length: f64) -> Result<(), QueryError> {
 ///
 /// # Errors
 /// Returns [`QueryError::MinGap`] if the gap is negative, not finite or larger than [`MAX_MAGNITUDE`]. Without
-/// the feature `min_gap`, any gap except 0 is an error.
+/// the feature `min-gap`, any gap except 0 is an error.
 #[inline]
 pub fn check_min_gap(gap: f64) -> Result<(), QueryError> {
     let most = if cfg!(feature = "min-gap") { MAX_MAGNITUDE } else { 0.0 };

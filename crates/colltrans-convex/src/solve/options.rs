@@ -37,7 +37,7 @@ pub struct Options {
     /// Options of [`Solver::Cta`]. Other solvers ignore them.
     pub narrowing: cta::Options,
     /// Minimum gap between the bodies (world units): the cast ends when their distance falls to this length. See
-    /// [`Cast::keeping`](crate::Cast::with_min_gap). The default is 0, with which the cast ends when the bodies touch.
+    /// [`Cast::with_min_gap`](crate::Cast::with_min_gap). The default is 0, with which the cast ends when the bodies touch.
     pub min_gap: f64,
 }
 
@@ -87,7 +87,7 @@ impl Options {
     /// - [`QueryError::GrazeTolerance`] if the graze tolerance is negative or not finite.
     /// - [`QueryError::NarrowingGap`] if the gap at which [`Solver::Cta`] ends is negative or not a number.
     /// - [`QueryError::MinGap`] if the minimum gap is negative or beyond the range of coordinates, or not 0 without the
-    ///   feature `min_gap`.
+    ///   feature `min-gap`.
     #[inline]
     #[doc(hidden)]
     pub fn check_lengths(&self) -> Result<(), QueryError> {

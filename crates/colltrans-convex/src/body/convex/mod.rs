@@ -36,7 +36,7 @@ use support::SupportIndex;
 /// It may have a lower dimension: a flat polygon, a segment, a point. It is immutable, `Send` and `Sync`. The
 /// indices that queries need are built at construction, in `O(n)` space. Two structures are built lazily, once, and
 /// cached: planar sections for [`Solver::Cta`](crate::Solver::Cta) (built ahead by [`Self::prepare_sections`]), and
-/// the body as a `Solid`. A clone copies the structures that exist.
+/// the body as a `Solid`. A clone copies existing sections, and shares an existing solid.
 ///
 /// Vertices and faces are numbered from 0. [`Self::input_indices`] maps vertices to the input.
 #[derive(Debug, Clone)]

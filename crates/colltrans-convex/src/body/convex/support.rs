@@ -346,15 +346,15 @@ impl SupportIndex {
         ring_of
     }
 
-    /// Returns the fan of a vertex, which must have more than [`FAN`] neighbours.
+    /// Returns the fan of a vertex, which must have more than [`MAX_SCANNED_NEIGHBOURS`] neighbours.
     pub(super) fn fan_of_vertex(&self, vertex: u32) -> &Fan {
         let found = self.fans.binary_search_by_key(&vertex, |fan| fan.vertex);
         &self.fans[found.unwrap_or_default()]
     }
 
     /// Returns the positions of candidates for neighbours in the supporting plane at `vertex`, as first position and
-    /// count, cyclic. A vertex with at most [`FAN`] neighbours yields all of them, any other the steepest neighbour
-    /// and the two next to it.
+    /// count, cyclic. A vertex with at most [`MAX_SCANNED_NEIGHBOURS`] neighbours yields all of them, any other the
+    /// steepest neighbour and the two next to it.
     #[inline]
     pub(crate) fn plane_candidates(
         &self,
@@ -603,8 +603,8 @@ fn build_fans(vertices: &[DVec3], topology: &Topology) -> Vec<Fan> {
         .collect()
 }
 
-/// Builds the rings of all faces with more than [`MAX_SCANNED_NEIGHBOURS`] corners, followed by the rings adjacent to such faces that
-/// have a vertex outside them.
+/// Builds the rings of all faces with more than [`MAX_SCANNED_NEIGHBOURS`] corners, followed by the rings adjacent to
+/// such faces that have a vertex outside them.
 fn build_rings(vertices: &[DVec3], topology: &Topology) -> Vec<Ring> {
     let large_faces = || {
         (0..topology.face_count() as u32)

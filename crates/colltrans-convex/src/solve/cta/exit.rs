@@ -21,9 +21,9 @@ use super::sectioned_body::SectionedBody;
 use crate::setting::{Setting, TwoBodies, VertexPair};
 use colltrans_kernel::topology::Topology;
 
-/// Maximum difference between the heights of the supporting plane and of the best point, as a share of the
-/// bodies' extent along the direction. A plane with a smaller difference that does not touch is not an error:
-/// portal refinement searches below it. The derivation is in `docs/theory/section-minimisation.md`.
+/// Maximum difference between the heights of the supporting plane and of the best point at which the exit test
+/// succeeds, as a share of the bodies' extent along the direction. If the plane does not touch `M` in spite of a
+/// smaller difference, portal refinement finds the lower face. `docs/theory/section-minimisation.md` derives the value.
 pub(super) const HEIGHT_TOLERANCE: f64 = 1e-10;
 
 /// Maximum number of steps out of both features for which the linear programme is solved.
@@ -268,8 +268,8 @@ impl ExitTest<'_, '_> {
         *self.rotation_matrix(body) * along.cross(self.vertex_difference(body, first, third))
     }
 
-    /// Finds the step out of a feature that leads farthest along `outward`, a normal in the body frame. Returns
-    /// its distance, and a half-edge of the face that contains it.
+    /// Finds the step of [`Self::for_each_step`] that leads farthest along `outward`, a normal in the body frame.
+    /// Returns its distance, and a half-edge of the face that contains it.
     fn farthest_step(&self, body: usize, outward: DVec3, feature: Feature) -> (f64, u32) {
         let mut farthest = (f64::NEG_INFINITY, 0);
         self.for_each_step(body, feature, |step, h| {

@@ -353,10 +353,10 @@ fn try_simplex_plane(difference: &Difference, found: &mut DescentResult) {
     found.verify_plane(difference);
 }
 
-/// Computes the unit normal of a simplex of two or three points from its edges instead of its corners. For short edges
-/// of both bodies rounding changes this normal less.
+/// Computes the unit normal of a simplex of two or three points. The edges are differences of vertices of each body,
+/// not of points of `M`, because rounding then changes the normal of a simplex with short edges less.
 ///
-/// `None` for other numbers of points, or if the normal has no length.
+/// `None` if the simplex has another number of points, or if the normal has no length.
 fn simplex_normal(difference: &Difference, found: &DescentResult) -> Option<DVec3> {
     let bodies = difference.bodies;
     let NearestPairs { pairs: [a, b, c], count } = found.start_pairs();

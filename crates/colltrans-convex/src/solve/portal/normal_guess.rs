@@ -25,11 +25,11 @@ pub(crate) struct NormalGuess {
     pub(crate) near: Option<VertexPair>,
 }
 
-/// Minimum cosine between the guess and the direction if bodies seem to meet. Thin bodies may meet at
-/// walls that are nearly parallel to the direction.
+/// Minimum cosine between the guess and the direction if bodies seem to meet. It is small, because thin bodies may meet
+/// at faces that are nearly parallel to the direction.
 const MIN_COSINE: f64 = 0.002;
-/// Minimum cosine between the guess and the direction if bodies seem to miss each other. A steeper
-/// guess carries no information about the position of walls.
+/// Minimum cosine between the guess and the direction if bodies seem to miss each other. A guess with a smaller cosine
+/// carries no information about the position of faces that are nearly parallel to the direction.
 const MIN_COSINE_IF_MISSED: f64 = 0.05;
 
 /// Mean semi-axis of an ellipsoid, divided by the square root of its trace.
@@ -168,8 +168,8 @@ fn log_ratio(r: f64, q: f64) -> f64 {
 /// Returns the normal where the line enters the ellipsoid around `center` with matrix `k`. If the line
 /// misses it, returns the normal where it passes nearest in the metric of the ellipsoid.
 ///
-/// With `J = det K^-1` the line is inside for the heights `h` with `J_zz h^2 - 2 (J c)_z h + c.J c <
-/// det`. The normal is parallel to `J c - h J e_z`.
+/// Let `det` be the determinant of `k` and `J = det k^-1` its adjugate. The line is inside for the heights `h` with
+/// `J_zz h^2 - 2 (J c)_z h + c.J c < det`. The normal is parallel to `J c - h J e_z`.
 #[inline]
 fn entry_normal(k: &Symmetric, center: DVec3) -> DVec3 {
     let (j, det) = k.adjugate();
@@ -185,8 +185,9 @@ fn entry_normal(k: &Symmetric, center: DVec3) -> DVec3 {
     if lateral.is_finite() { lateral.extend(0.0) } else { DVec3::Z }
 }
 
-/// Returns `(a, 1)` parallel to `normal`, or, if that is steeper than `MIN_COSINE` or points downwards, along its
-/// lateral part. Returns a lateral normal unchanged.
+/// Returns `(a, 1)` parallel to `normal`. If `normal` points downwards or its cosine with the direction is below
+/// `MIN_COSINE`, returns `(a, 1)` with `a` along its lateral part and a cosine of about `MIN_COSINE`. Returns a lateral
+/// normal unchanged.
 #[inline]
 fn with_limited_slope(normal: DVec3) -> DVec3 {
     if normal.z == 0.0 {

@@ -2,8 +2,8 @@
 //!
 //! A plane through known vertices of `M` needs no search for a support point. The neighbourhood of one
 //! of the vertices decides whether it is a support point, and bounds how far the bodies reach beyond
-//! the plane ([`settled`](crate::body::ConvexPolyhedron::support_with_excess)). A certificate needs this bound in
-//! any case.
+//! the plane ([`support_with_excess`](crate::body::ConvexPolyhedron::support_with_excess)). A certificate needs this
+//! bound in any case.
 
 use glam::DVec3;
 
@@ -11,8 +11,8 @@ use crate::body::LargeFace;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 
-/// Maximum excess of the bodies beyond two large faces, in noises. For less flat faces, other support
-/// points prove a tighter bound.
+/// Maximum excess of the bodies beyond the plane of two large faces, in noises. If the faces are less flat, this plane
+/// is not used, because planes through other support points prove a tighter bound.
 const MAX_EXCESS: f64 = 4.0;
 
 /// A supporting plane of `M`.

@@ -111,8 +111,8 @@ pub struct NearPoints {
 /// The answer of [`Pair::depth`](crate::Pair::depth): the length of the shortest translation, in any
 /// direction, that separates two convex bodies.
 ///
-/// `lower <= true depth <= upper` holds exactly for the bodies as given. Both bounds are 0 if the bodies are
-/// separated.
+/// `lower <= true depth <= upper` holds exactly for the bodies as given. Both bounds are 0 if a plane is proven to
+/// separate the bodies.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",

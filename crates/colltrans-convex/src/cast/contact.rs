@@ -15,7 +15,7 @@ pub struct WitnessPoints {
     /// Point on the moving body, in its *start* pose.
     pub on_moving: DVec3,
     /// Point on the fixed body: the contact point. It equals `on_moving + translation * direction` up to
-    /// rounding, and is not unique if an edge or a face lies on the other body.
+    /// rounding, or up to the minimum gap of the cast. It is not unique if an edge or a face lies on the other body.
     pub on_fixed: DVec3,
 }
 

@@ -22,8 +22,8 @@ impl Pair<'_> {
     /// Computes the penetration depth: the length of the shortest translation, in any direction, that
     /// separates the bodies.
     ///
-    /// The bounds hold exactly, and differ by a few noises. Both are 0 if the bodies are separated. The lower
-    /// one is 0 if they touch, or are flat in a common plane.
+    /// The bounds hold exactly, and differ by a few noises. Both are 0 if a plane is proven to separate the bodies. The
+    /// lower one is 0 if they touch, or are flat in a common plane.
     ///
     /// # Errors
     /// Returns [`QueryError::NotConverged`] if the search ends without an answer.

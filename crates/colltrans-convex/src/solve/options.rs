@@ -37,7 +37,8 @@ pub struct Options {
     /// Options of [`Solver::Cta`]. Other solvers ignore them.
     pub narrowing: cta::Options,
     /// Minimum gap between the bodies (world units): the cast ends when their distance falls to this length. See
-    /// [`Cast::with_min_gap`](crate::Cast::with_min_gap). The default is 0, with which the cast ends when the bodies touch.
+    /// [`Cast::with_min_gap`](crate::Cast::with_min_gap). The default is 0, with which the cast ends when the bodies
+    /// touch.
     pub min_gap: f64,
 }
 

@@ -18,7 +18,7 @@ use colltrans_kernel::visit_counter;
 /// with more corners have a ring.
 pub(crate) const MAX_SCANNED_NEIGHBOURS: usize = 32;
 
-/// Maximum number of corners of a face that is not measured at three corners.
+/// Number of corners of a face above which the face is measured at three corners only.
 pub(super) const MAX_UNMEASURED_CORNERS: usize = 8;
 
 /// Factor of the bound of the rounding error of two compared slopes, which is
@@ -39,7 +39,7 @@ pub(super) struct Fan {
     /// Bound of the polygon's deviation from convexity: the amount by which slopes may rise after they have begun to
     /// fall, relative to the normal's length.
     dent: f64,
-    /// Faces around the vertex with many corners.
+    /// Faces around the vertex with more than [`MAX_UNMEASURED_CORNERS`] corners.
     wide: Vec<u32>,
 }
 

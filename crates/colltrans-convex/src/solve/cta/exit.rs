@@ -73,8 +73,8 @@ pub(super) enum ExitResult {
     Missed,
 }
 
-/// Place where `phi` falls: at these levels, up to rounding, the contact is in one face of each body or on its
-/// boundary, and continues on these faces.
+/// Place from which `phi` falls. At these levels, up to rounding, the contact lies in one face of each body or on the
+/// boundary of this face. Beyond them it continues in these faces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Descent {
     /// Face of each body, by a half-edge.
@@ -149,8 +149,8 @@ impl ExitTest<'_, '_> {
         Descent { faces, levels: [level(0), level(1)] }
     }
 
-    /// Finds the features that touch in the best point. `None` for separated sections, for an edge without a
-    /// known face, and for a vertex contact that does not end at a face of the other body.
+    /// Finds the features that touch in the best point. `None` for separated sections, for an edge whose face is
+    /// unknown, and for a vertex contact if none of the `changes` names a face of the other body.
     fn touching_features(
         &self,
         answer: &PlanarAnswer,

@@ -161,7 +161,7 @@ impl Section<'_> {
         found
     }
 
-    /// Finds the last vertex in the direction of `chain` for which `holds`, by a search in the body's chains.
+    /// Finds the last vertex in the direction of `chain` for which `holds` is true, by a search in the body's chains.
     /// `holds` must be true for `from` and the vertices after it up to some vertex, and false for all others.
     /// `None` if the body has no chains or the search fails.
     pub(super) fn last_vertex_where(
@@ -318,8 +318,8 @@ impl Section<'_> {
         }
     }
 
-    /// Finds an edge of the chain near `start`, which is at its top or bottom, or on the opposite chain. `None`
-    /// after [`Self::max_steps`].
+    /// Finds an edge of the chain near the vertex `start`. This vertex is at the top or at the bottom of the chain, or
+    /// on the opposite chain. `None` after [`Self::max_steps`].
     fn any_chain_edge(&self, chain: Chain, start: Crossing) -> Option<SectionEdge> {
         // Walks around the bottom and back over the top at once; the shorter way ends first.
         let (mut ahead, mut back) = (start, start);

@@ -37,9 +37,9 @@ const MAX_WIDTH: f64 = 15.0;
 /// allows more for rounding there.
 const MAX_WIDTH_GLIDING: f64 = 24.0;
 
-/// Reductions of the gap, in noises, with which nearer points are searched if the points at the gap are not proven to
-/// be within it. At most eight, because the graze tolerance, which the overlap of a contact exceeds, is at least eight
-/// noises.
+/// Reductions of the gap, in noises, for gliding bodies (`gliding_contact`). If no point at the gap is proven to be
+/// within the gap, the search for a smaller gap finds nearer points. The overlap of a contact exceeds the graze
+/// tolerance, which is at least eight noises. Therefore the line crosses all gaps that are smaller by at most eight.
 const GAP_REDUCTIONS: [f64; 4] = [4.0, 2.0, 6.0, 8.0];
 
 /// Maximum distance behind the plane of gliding bodies, in noises over `n.d`, at which a point is searched.

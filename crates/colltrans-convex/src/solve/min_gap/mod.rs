@@ -27,13 +27,14 @@ const SUFFICIENT_WIDTH: f64 = 5.0;
 /// Minimum step of the lower bound, in noises over `n.d`, that counts as progress.
 const MIN_BOUND_STEP: f64 = 0.125;
 
-/// First distance ahead of the lower bound, in noises over `n.d`, of a sample taken to find a point that is proven to
-/// be within the gap.
+/// Initial distance ahead of the lower bound, in noises over `n.d`, of the samples that search for a point proven to be
+/// within the gap. The distance doubles with each such sample.
 const FIRST_STEP_AHEAD: f64 = 5.5;
-/// Maximum distance ahead of the lower bound, in noises over `n.d`, of such a sample.
+/// Maximum distance ahead of the lower bound, in noises over `n.d`, of the samples of [`FIRST_STEP_AHEAD`].
 const MAX_STEP_AHEAD: f64 = 11.0;
 
-/// Reduction of the gap, in noises, for which an upper bound is solved; slightly more than its check needs.
+/// Reduction of the gap, in noises, with which an upper bound is computed. It exceeds the margin with which the upper
+/// bound is checked ([`GapLine::is_within_gap`]).
 const GAP_MARGIN: f64 = 2.0;
 
 /// Maximum number of rounds of the descent in the shadow.
@@ -90,7 +91,7 @@ pub struct GapLine {
     pub min_gap: f64,
     /// Noise of the configuration's size plus the gap.
     pub noise: Noise,
-    /// Greatest distance from the origin at which the set can be as near as the gap.
+    /// Maximum `|s|` of a crossing. Points of the line farther from the origin are farther from the set than the gap.
     pub(crate) max_distance: f64,
 }
 
@@ -168,15 +169,15 @@ impl GapLine {
         way.length() + self.noise.mean_length_margin() <= self.min_gap
     }
 
-    /// Returns the distance of the bounds that `noises` noises, and the plane's error beyond its support,
-    /// explain.
+    /// Returns the difference of the bounds that is due to an error of `noises` noises and to the excess of the set
+    /// beyond the support of the plane.
     pub(crate) fn bound_width<S>(&self, plane: &SetPlane<S>, noises: f64) -> f64 {
         (noises * self.noise.point_error() + 2.0 * plane.excess)
             / self.direction_cosine(plane.normal)
     }
 
-    /// Returns the distance from `s` to the crossing of the nearest vertex or edge alone. `None` for a larger
-    /// feature, or if the feature has no crossing.
+    /// Returns the displacement along the line from `s` to the crossing of the nearest feature, if the set consisted of
+    /// this vertex or edge alone. `None` for a face, or if the feature has no crossing.
     fn distance_to_feature<S, P>(&self, look: &DistanceSample<S, P>, s: f64) -> Option<f64> {
         let from_sample = |k: usize| look.corners[k] - self.unit * s;
         match look.count {

@@ -101,7 +101,7 @@ pub enum SectionContact {
     Edges,
     /// A corner of one section, which lies on an edge of its body, touches the other section.
     Vertex,
-    /// The sections never meet: a line parallel to the projected direction separates them.
+    /// The sections never meet: a line separates their projections along the direction.
     Separated,
     /// Rounding hides a section.
     Hidden,

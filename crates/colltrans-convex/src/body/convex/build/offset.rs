@@ -43,9 +43,9 @@ impl ConvexPolyhedron {
     /// which is the farthest one along the sum of the normals of its faces. Planes deviate by less than `2^-40` of
     /// the largest coordinate.
     ///
-    /// In contrast, `Solid::shrunk` moves each vertex the shortest way, and one vertex remains one. In boxes and
-    /// prisms the result is the same. In other bodies a vertex may move farther below some planes, where a way
-    /// between two of them is shorter.
+    /// In contrast, `Solid::shrunk` moves each vertex by the shortest sufficient displacement, and does not split
+    /// vertices. In boxes and prisms the result is the same. In other bodies, the shortest displacement may lead a
+    /// vertex farther than `amount` below some planes.
     ///
     /// It takes `O(n log n)` time, repeated several times if nearly nothing remains.
     ///

@@ -37,7 +37,7 @@ impl AxisPair {
         let (mut best, mut quality) = ((0, 0), -1.0);
         for i in 0..4 {
             for j in 0..4 {
-                // The squares of the three quantities for vectors of length `sqrt 3`, times a common factor 9.
+                // The squares of the three quantities for unit vectors, times a common factor 9.
                 let cosine = a[i].dot(b[j]);
                 let q = a_along[i].min(b_along[j]).min(9.0 - cosine * cosine);
                 if q > quality {

@@ -15,7 +15,7 @@
 use super::snapshots::{LeveledMesh, Turn};
 use colltrans_kernel::topology::Topology;
 
-/// Maximum number of sides of a face that is not searched along its boundary.
+/// Number of sides of a face above which its boundary is searched with steps that double.
 const MAX_WALKED_SIDES: u32 = 8;
 
 /// Marks a face without a rank.

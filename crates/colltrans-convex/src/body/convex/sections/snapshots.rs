@@ -22,9 +22,9 @@ const EDGES_PER_ENTRY: usize = 4;
 /// Ratio of the stride `s` of a snapshot to the square root of the number of edges of its section (measured).
 const STRIDE_PER_ROOT: f64 = 1.0 / 3.0;
 
-/// Ratio of the edges of a section to the square root of the number of vertices above which a body has chains. With
-/// 8, ellipsoids of 20,000 vertices and 16 meridians had chains too, and took 103 instead of 63
-/// iterations per planar problem.
+/// Ratio of the number of edges of the largest section to the square root of the number of vertices above which a body
+/// has chains. With a ratio of 8, ellipsoids of 20,000 vertices and 16 meridians had chains too. They took 103 instead
+/// of 63 iterations per planar problem.
 pub(super) const CHAIN_THRESHOLD: f64 = 24.0;
 
 /// Number of candidates that one round of the search for an extreme entry compares, approximately.

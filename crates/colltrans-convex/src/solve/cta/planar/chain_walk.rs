@@ -48,7 +48,8 @@ pub(super) struct FacingChains<'a, 'b> {
 pub(super) enum ChainWalk {
     /// The answer.
     Solved(PlanarAnswer),
-    /// The bottom of this body's section, at which its edge begins, is not beyond the edge of the other body.
+    /// The walk has reached the bottom of this body's section, and the bottom is not beyond the edge of the other
+    /// body. Contains the last edges.
     Within(usize, [SectionEdge; 2]),
 }
 
@@ -149,8 +150,8 @@ impl<'a, 'b> FacingChains<'a, 'b> {
         Some(edges)
     }
 
-    /// Walks from any edges down to where the gap is positive and falls, and up from there. `None` if a walk
-    /// fails.
+    /// Walks from any edges down to a height at which the gap is positive and falls, and from there up to the answer.
+    /// `None` if a walk fails.
     pub(super) fn walk_to_answer(&self, from: &[SectionEdge; 2]) -> Option<ChainWalk> {
         let mut edges = self.approach_by_newton(from);
         for step in 1..=self.max_steps() {

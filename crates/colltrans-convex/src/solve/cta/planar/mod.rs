@@ -46,7 +46,7 @@ pub(super) struct PlanarHint {
     pub(super) last: LastAnswer,
 }
 
-/// Answer of the preceding problem. Edges are half-edges upwards that cross its levels.
+/// Answer of the preceding problem. Its edges and its vertex are given by half-edges upwards that cross its levels.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum LastAnswer {
     /// No answer is known.
@@ -132,9 +132,12 @@ impl SectionProblem<'_> {
         }
     }
 
-    /// Solves the problem from the bottom of section `upper`, near `vertex`, and the edges of the other section
-    /// at its height, near `between`. If the other bottom is higher, exchanges the sections unless
-    /// `is_upper_known`. `None` if a walk fails.
+    /// Solves the problem for the bottom of section `upper` and the two edges of the other section at the height of
+    /// this bottom. The search for the bottom starts at the half-edge `vertex`, that for the edges at the half-edges
+    /// `between`.
+    ///
+    /// If the bottom of the other section is higher, exchanges the sections, unless `is_upper_known`. `None` if a walk
+    /// fails.
     fn solve_at_bottom(
         &self,
         upper: usize,

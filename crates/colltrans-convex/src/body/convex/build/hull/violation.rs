@@ -208,9 +208,9 @@ impl<'a> Gauge<'a> {
         self.bound_by_all_faces(p).min(inside)
     }
 
-    /// Returns the bound for a point that its face leaves inside; infinity if the point is not between the centre
-    /// and the face. From the centre to the point where its ray passes the face, the distance from a convex body is
-    /// at most the weighted mean of the distances at both ends.
+    /// Returns the bound for a point between the centre and the face `face` of its ray; infinity for any other point.
+    /// Along the ray, between the centre and the face, the distance from the convex body is at most the weighted mean
+    /// of the distances at both ends.
     fn bound_by_ray(&mut self, p: DVec3, face: usize) -> f64 {
         let ray = p - self.locator.center;
         let (normal, offset) = self.locator.planes[face];
@@ -256,8 +256,8 @@ impl<'a> Gauge<'a> {
         is_below_some
     }
 
-    /// Returns the smallest bound from triangles of a face's fan. It is 0 if the point lies in one of them, exactly;
-    /// this is tested only where it makes a difference.
+    /// Returns the smallest bound from triangles of a face's fan. The bound is 0 if the point lies exactly in one of
+    /// the triangles. The exact test is made only if the rounded bound is small and exceeds [`Self::input_excess`].
     fn bound_by_face(&self, p: DVec3, face: usize, search: FanSearch) -> f64 {
         let range = self.topology.face_half_edges(face as u32);
         let corner =
@@ -297,8 +297,9 @@ enum FanSearch {
     All,
 }
 
-/// Finds the last corner `k`, except the last of all, for which the foot is not clockwise of it, seen from the
-/// first corner.
+/// Finds the triangle of a face's fan whose sector, seen from the corner 0, contains `foot`. Returns `k` for the
+/// triangle of the corners 0, `k` and `k + 1`: the first triangle if `foot` is clockwise of all sectors, the last one
+/// if it is counter-clockwise of them.
 fn fan_triangle(first: DVec2, count: usize, foot: DVec2, corner: impl Fn(usize) -> DVec2) -> usize {
     let (mut low, mut high) = (1, count - 1);
     while low + 1 < high {
@@ -313,8 +314,8 @@ fn fan_triangle(first: DVec2, count: usize, foot: DVec2, corner: impl Fn(usize) 
     low
 }
 
-/// Returns the distance of a point from the point of a triangle above `foot`, or from the nearest point of its
-/// edges if `foot` is outside.
+/// Returns the distance of a point from the point of a triangle whose projection is `foot`. If `foot` is outside the
+/// projected triangle, returns the distance from the nearest point of the edges.
 fn distance_to_triangle(
     p: DVec3,
     [a, b, c]: [DVec3; 3],

@@ -120,8 +120,8 @@ pub(crate) fn feature_in_plane(
     OwnFeature::Edge([vertex, neighbours[wrapped(first + in_plane_mask.trailing_zeros() as usize)]])
 }
 
-/// Checks whether a predicate holds for all tested vertices of a face. At most [`MAX_SAMPLES`] vertices are tested. They
-/// are spread over the face, because consecutive vertices may lie in a plane that does not contain the others.
+/// Checks whether a predicate holds for all tested vertices of a face. At most [`MAX_SAMPLES`] vertices are tested.
+/// They are spread over the face, because consecutive vertices may lie in a plane that does not contain the others.
 fn holds_for_samples(
     mut vertices: impl ExactSizeIterator<Item = u32>,
     holds: impl FnMut(u32) -> bool,

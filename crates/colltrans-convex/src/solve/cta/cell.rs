@@ -269,8 +269,8 @@ impl ContactCell {
         Some(())
     }
 
-    /// Adds the sides within which the contact stays between the ends of a section edge, and these ends on
-    /// their mesh edges.
+    /// Adds the sides within which the contact stays between the ends of a section edge, and each of these ends on
+    /// its mesh edge.
     fn add_mesh_edges(&mut self, contact: &EdgeContact) {
         let SectionEdge { low, high, .. } = contact.edge;
         let own = level_axis(contact.body);

@@ -88,10 +88,10 @@ pub(super) enum Flat {
 ///   point, which limits the cost of inserting them depth first.
 const POINTS_PER_PATCH: u32 = 128;
 
-/// Maximum number of triangles of a new cone for which each orphan, a point whose triangle was removed, is compared with
-/// all of them. The orphan is assigned to the triangle that it is farthest outside of. In a larger cone,
-/// [`ConeSectors`] finds the visible triangle. Such cones occur for two rings close together, as along a chamfer, where a patch of one ring is still
-/// completed before that of the other.
+/// Maximum number of triangles of a new cone for which each orphan, a point whose triangle was removed, is compared
+/// with all of them. The orphan is assigned to the triangle that it is farthest outside of. In a larger cone,
+/// [`ConeSectors`] finds the visible triangle. Such cones occur for two rings close together, as along a chamfer, where
+/// a patch of one ring is still completed before that of the other.
 const MAX_SCANNED_CONE: usize = 16;
 
 /// Computes the hull of the points in `kept`. Points within the tolerance of a triangle, and outside none by more,

@@ -207,8 +207,11 @@ impl<B: CastBody> Cast<'_, B> {
     ///
     /// The bounds are wider if the bodies pass each other at about the gap. They then differ by the
     /// translation after which a face nearly parallel to the direction is nearer by more than the rounding
-    /// error. The choice of solver has no effect. Observers receive one plane for each computed distance, and
-    /// no portals.
+    /// error.
+    ///
+    /// The solver of the options has no effect, except that convex bodies are also cast without the gap in two cases:
+    /// if the gap is at most eight noises, and to decide whether the bodies graze without the gap. Observers receive
+    /// one plane for each computed distance. They receive portals only for a gap of at most eight noises.
     ///
     /// For solids, shrunk by half of the tolerance where a query uses it, no two facets come nearer than the
     /// gap up to `lower`. Facets that pass each other, or start, at the gap to within eight noises

@@ -123,7 +123,8 @@ impl<'a, B> TwoBodies<'a, B> {
 }
 
 impl<B: VertexHull> TwoBodies<'_, B> {
-    /// Returns the size `S` of the configuration, a bound on `|q - p|` over all points of the bodies.
+    /// Returns the size `S` of the configuration. It bounds `|q - p|` over all points of the bodies, except for
+    /// rounding and the stretch of the poses by a factor of at most `MAX_STRETCH`.
     #[inline]
     pub fn size(&self) -> f64 {
         self.moving.reach() + self.fixed.reach() + self.offset.length()

@@ -7,8 +7,8 @@
 //!   or a face.
 //! - *excess* of `v`: an upper bound of the height above `v` that the body reaches along the normal.
 //!
-//! Faces with many corners are measured at three corners, with a bound for the others. The bounds hold for any
-//! vertex, so they also verify vertices that no climb has found. Derivations: `docs/theory/supports.md`.
+//! Faces with many corners are measured at three corners, with a bound for the others. The plateau can be visited
+//! from any vertex, so the bounds also verify vertices that no climb has found. Derivations: `docs/theory/supports.md`.
 
 use glam::DVec3;
 
@@ -101,7 +101,10 @@ impl Plateau {
 
 impl ConvexPolyhedron {
     /// Returns a support point along the unit vector `normal` (body frame), and a bound on how far the body reaches
-    /// beyond it. `vertex` is the vertex that a climb has found.
+    /// beyond it.
+    ///
+    /// `vertex` is the vertex that a search along `normal` has found. On a body that is small enough to scan, it is not
+    /// verified: it must be the result of a scan.
     #[doc(hidden)]
     #[inline]
     pub fn support_with_excess(&self, normal: DVec3, vertex: u32) -> (u32, f64) {
@@ -121,7 +124,8 @@ impl ConvexPolyhedron {
     }
 
     /// Returns a support point along `normal`, and a bound on how far the body reaches beyond it. Returns `None` if
-    /// a vertex is found that gains more than `most` over `near`, or if no bound up to `most` is found.
+    /// a vertex is found that gains more than `most` over `near`, or if no bound up to `most` is found. The returned
+    /// bound may exceed `most` by the rounding error and the flatness.
     ///
     /// `length` is the length of `normal`. Comparisons are scaled by it, so that they need not wait for a division.
     #[inline(always)]
@@ -312,7 +316,8 @@ impl ConvexPolyhedron {
     }
 
     /// Computes the excess beyond a vertex from three corners of a large face. Returns `None` if the plateau may
-    /// leave the face, or the excess may exceed `most`.
+    /// leave the face, or if another corner may gain more than `most`. The result also includes rounding errors and the
+    /// flatness. Therefore it may exceed `most`.
     #[inline]
     pub(crate) fn large_face_excess(
         &self,

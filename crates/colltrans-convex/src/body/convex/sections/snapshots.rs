@@ -1,9 +1,9 @@
 //! Snapshots: edges of the section at selected levels, in cyclic order.
 //!
-//! The first snapshot is at the lowest level. The next one follows when the vertices passed have
-//! [`EDGES_PER_ENTRY`] edges for each of its entries. Therefore all snapshots together have `O(n)` entries, and a
-//! vertex with very many edges gets its own snapshot. A query at level `x` starts from the last snapshot at or
-//! below `x`, and no such vertex lies between.
+//! The first snapshot is at the lowest level. The next one follows when the vertices passed since the last snapshot
+//! have [`EDGES_PER_ENTRY`] edges for each entry of that snapshot. Therefore all snapshots together have `O(n)`
+//! entries, and a vertex with very many edges gets its own snapshot. A query at level `x` starts from the last snapshot
+//! at or below `x`, and no such vertex lies between.
 //!
 //! An entry stores a crossing edge, its position and its *drift*: the change of position per level along a climb to
 //! the next snapshot. Positions and drifts are `f32` and only guide a search, which the mesh decides. A snapshot

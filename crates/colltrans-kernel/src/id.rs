@@ -1,7 +1,7 @@
 //! Typed numbers of vertices, faces and obstacles.
 //!
-//! A body renumbers its vertices and faces, so that they differ from the numbers of the input. Answers, and
-//! mappings between the two numberings, use these types. These functions use plain `u32`:
+//! A body renumbers its vertices and faces, so that the numbers may differ from those of the input. Answers, and
+//! mappings between the two numberings, use these types. Plain `u32` are used in these places:
 //!
 //! - Constructors of bodies: a corner of a face is an index into the vertices passed to the same constructor.
 //! - `Solid::triangles`, `ConvexPolyhedron::face_vertices` and `HalfEdge`: vertices, faces and half-edges have

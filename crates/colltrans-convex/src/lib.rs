@@ -21,9 +21,9 @@
 //!   of this face are the certificate. `outline` approximates bodies with rims by hulls of ellipses, and
 //!   `outline_maximum` computes the contact normal of these hulls. `cta` is the paper's algorithm. It minimises
 //!   `phi(x, y)`, the collision translation of two planar sections, by cutting planes in floating point. The
-//!   result is a guess of the contact normal. `nearest` descends to the nearest point of `M` over its simplices. `depth` grows
-//!   a polytope of points of `M` where the origin is nearest to its boundary. `min_gap` solves casts with a
-//!   minimum gap, by Newton's method over nearest points. `observe` reports steps to an observer.
+//!   result is a guess of the contact normal. `nearest` descends to the nearest point of `M` over its simplices.
+//!   `depth` grows a polytope of points of `M` where the origin is nearest to its boundary. `min_gap` solves casts
+//!   with a minimum gap, by Newton's method over nearest points. `observe` reports steps to an observer.
 //! - `cast`: [`Cast`], its derived answers, contact details and files. [`CastBody`] is the trait of bodies
 //!   that can be cast.
 //! - `pair`: [`Pair`], the queries about two placed bodies without a direction, and the checks of their

@@ -83,7 +83,7 @@ pub enum QueryError {
         /// The half-side, as given.
         half_side: f64,
     },
-    /// The search ended without an answer, and proves nothing.
+    /// The search ended without an answer. The fields of [`Stalled`] state which bounds are proven nevertheless.
     ///
     /// The known cases have a body that is thinner than the rounding error at the size of the configuration
     /// (ratios above 1e11). Please report any other case; it can be saved as a file.

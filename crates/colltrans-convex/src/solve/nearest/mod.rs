@@ -9,7 +9,8 @@
 //! - *Upper*: the points are weighted means of vertices. Their distance is raised by its rounding error
 //!   ([`Noise::mean_length_margin`]).
 //! - *Lower*: the height along a rounded unit normal is lowered by one noise and by the excess of the bodies beyond the
-//!   support points ([`TwoBodies::support_with_excess`]).
+//!   support points ([`TwoBodies::support_with_excess`]). Near contact, if this bound is not positive, the heights of
+//!   all vertices are computed nearly without rounding ([`TwoBodies::input_gap`]).
 
 mod depth;
 mod gjk;

@@ -135,8 +135,8 @@ pub trait SolidPair<'a>: Sized {
         length: f64,
     ) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError>;
 
-    /// Checks whether the bodies overlap, and computes the depth as the least tolerance at which they do not. This
-    /// depth is not a translation; for convex bodies [`Pair::depth`] returns one.
+    /// Checks whether the bodies have a common point, and computes the depth of their overlap as the least tolerance at
+    /// which they do not overlap. This depth is not a translation. For convex bodies [`Pair::depth`] returns one.
     ///
     /// # Errors
     /// Returns no error at present.

@@ -1,8 +1,8 @@
 //! Bodies of a solid: a shell with its cavities.
 //!
-//! A cavity is a closed shell with a negative volume. It belongs to the smallest closed shell of positive volume that
-//! contains it. As in [`shells`], containment is decided exactly by the ray along `z` from a vertex of the cavity,
-//! with the tree of boxes.
+//! A cavity is a closed shell with a negative volume. It belongs to the smallest closed shell of positive volume in the
+//! same piece that contains it. If there is none, it is a body of its own. As in [`shells`], containment is decided
+//! exactly by the ray along `z` from a vertex of the cavity, with the tree of boxes.
 
 use std::collections::BTreeMap;
 

@@ -138,13 +138,14 @@ impl NormalDecomposition {
         w * depths[usize::from(self.corner & 31)] + v * depths[usize::from(self.edge & 31)]
     }
 
-    /// Returns the part of [`Self::gain`] that the edge contributes.
+    /// Returns the part of [`Self::support_reduction`] that the edge contributes.
     #[inline]
     pub(crate) fn edge_support_reduction(&self, depths: &Depths) -> f64 {
         self.weights[1] * depths[usize::from(self.edge & 31)]
     }
 
-    /// Returns [`Self::gain`] for the cuts of a node, with the parameters of [`depths`], without computing a table.
+    /// Returns [`Self::support_reduction`] for the cuts of a node, with the parameters of [`depth_table`], without
+    /// computing a table.
     #[inline]
     pub(crate) fn support_reduction_by_cuts(
         &self,

@@ -2,13 +2,16 @@
 //!
 //! - A face grows from its largest triangle across edges. It takes neighbours of the same input facet, and neighbours
 //!   with the same orientation whose corners lie in the current plane of the face, within the precision.
-//! - This plane has the sum of the area vectors as normal and contains the weighted centroid. It is more accurate for
-//!   a larger face, which small triangles with rounded corners require. It is not the plane of the neighbour, so that
-//!   the small angles between facets of a cylinder do not accumulate.
-//! - The precision is [`SINGLE_PRECISION`] or [`DOUBLE_PRECISION`] times the reach of the body, by the precision of
-//!   all coordinates. Faces only name features. No length or bound depends on them.
-//! - An edge of the mesh is *sharp* if it has no neighbour or one of another face. Two sharp edges that alone meet in
-//!   a straight line belong to one edge of the solid. Other end points of sharp edges are corners.
+//! - The normal of this plane is the sum of the area vectors of the face, and the plane contains their weighted
+//!   centroid. Both become more accurate as the face grows, so small triangles with rounded corners do not tilt the
+//!   plane. Neighbours are compared with this plane and not with the plane of one triangle. Therefore the small angles
+//!   between the facets of a cylinder do not accumulate.
+//! - The precision is the reach of the body times [`SINGLE_PRECISION`] if all coordinates are single-precision numbers,
+//!   and times [`DOUBLE_PRECISION`] otherwise.
+//! - Faces give the features of contacts and distances. They also determine whether a contact lies inside a face, which
+//!   selects its normal and thus affects its nominal translation. Certificates do not depend on faces.
+//! - An edge of the mesh is *sharp* if it has no neighbour or one of another face. A vertex at which exactly two sharp
+//!   edges end, in one straight line, lies within an edge of the solid. Every other end of a sharp edge is a corner.
 
 use glam::DVec3;
 

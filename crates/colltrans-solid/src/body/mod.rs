@@ -415,8 +415,8 @@ impl Solid {
         !self.is_open(self.spans[shell as usize].triangle as usize)
     }
 
-    /// Checks whether a closed body vanishes under an inward offset by this amount, because the amount is at least
-    /// half of the smallest side of its box.
+    /// Checks whether a closed body vanishes under an inward offset by this amount, because the amount is positive and
+    /// at least half of the smallest side of its box.
     pub(crate) fn vanishes_under_offset(&self, amount: f64) -> bool {
         amount > 0.0 && 2.0 * amount >= self.min_side() && self.is_closed()
     }
@@ -493,8 +493,8 @@ impl Solid {
         self.shrinking_by(amount).map_or(0.0, |shrinking| shrinking.max_displacement * amount.abs())
     }
 
-    /// Returns the memory that the solid occupies now, in bytes. Lazily computed data (offset facets, polygons)
-    /// counts once it exists.
+    /// Returns the memory that the solid occupies now, in bytes. Lazily computed data (offset field, polygonal faces,
+    /// data that queries derive) counts once it exists.
     pub fn memory_bytes(&self) -> usize {
         size_of::<Self>() + self.heap_bytes()
     }

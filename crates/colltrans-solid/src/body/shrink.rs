@@ -2,8 +2,9 @@
 //!
 //! - Under an offset by `e`, vertex `v` moves to `v + e x`. Here `x` is the shortest vector with `n.x <= -1` for the
 //!   unit normals `n` of all facets around the vertex. If no such vector exists (at a saddle), the vertex stays.
-//! - `x` does not depend on `e`, so one field of displacements serves all amounts. `v + e x` is computed in floating point
-//!   (traces become 0), and the results define the offset body. If `x` is longer than 64, the vertex stays, too.
+//! - `x` does not depend on `e`, so one field of displacements serves all amounts. `v + e x` is computed in floating
+//!   point, and coordinates too small for the exact range become 0. The results define the offset body. If `x` is
+//!   longer than 64, the vertex stays, too.
 //! - Sheets have no inner side. Their vertices, which they share only with other sheets, stay.
 //! - Facets with a height below a millionth of the body's reach are ignored if the vertex has others, because in single
 //!   precision their normals are noise.
@@ -331,7 +332,7 @@ impl<'a> VertexFacets<'a> {
 }
 
 /// Returns the shortest `x` with `n.x <= -1` for all normals; `None` if there is none with a length of at most
-/// [`MAX_DISPLACEMENT`].
+/// [`MAX_DISPLACEMENT`]. After [`MAX_ROUNDS`] rounds `x` satisfies the conditions, but it may not be the shortest.
 fn shortest_displacement(normals: &[DVec3]) -> Option<DVec3> {
     let mut simplex = vec![*normals.first()?];
     for _ in 0..MAX_ROUNDS {

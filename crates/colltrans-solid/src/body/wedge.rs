@@ -3,7 +3,8 @@
 //! - Directions around an axis `u` are ordered counter-clockwise, as seen with `u` pointing at the viewer.
 //! - A facet that runs along `u` has its material on its clockwise side, a facet that runs against `u` on its
 //!   counter-clockwise side. Therefore the wedge of an edge is the open arc from its backward to its forward facet.
-//! - Directions are those of points. The second direction of a flat surface is opposite to that of a point.
+//! - A [`Ray`] is a half-plane bounded by the axis, given by a point in it or by a point in the opposite half-plane. A
+//!   facet through whose interior the axis runs has one ray of each kind, with the same point.
 
 use std::cmp::Ordering;
 
@@ -15,7 +16,7 @@ pub(crate) trait AxisSigns {
     fn same_half(&self, x: usize, y: usize) -> bool;
 }
 
-/// The direction of a point, or its opposite.
+/// The direction from the axis to a point, or the opposite direction.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ray {
     pub(crate) point: usize,

@@ -143,8 +143,8 @@ pub struct SolidOverlap {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SolidFree {
-    /// Separating plane parallel to the direction. `None` if no plane was found whose margin exceeds the rounding
-    /// errors, or if [`SolidOptions::before`] is set.
+    /// Separating plane parallel to the direction. `None` if no plane was found whose margin exceeds the minimum gap
+    /// and the rounding errors, or if [`SolidOptions::before`] is set.
     pub separation: Option<Separation>,
     /// Work done.
     pub steps: SolidSteps,

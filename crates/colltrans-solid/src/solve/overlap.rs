@@ -50,8 +50,8 @@ pub fn find_overlap(scene: &PairFrame, steps: &mut SolidSteps) -> Option<Overlap
     find_overlap_with(scene, &mut |entry| steps.count_pair(entry))
 }
 
-/// Finds an overlap like [`find_overlap`]. Calls `cut` for every pair of nodes in the order of the descent, with `None` if the
-/// pair was split, otherwise with the reason.
+/// Finds an overlap like [`find_overlap`]. Calls `cut` for every pair of nodes in the order of the descent, with `None`
+/// if the pair was split, otherwise with the reason.
 pub(crate) fn find_overlap_with(
     scene: &PairFrame,
     cut: &mut impl FnMut(Option<Reason>),
@@ -197,8 +197,9 @@ impl PairTest {
 
     /// Returns the reason why a pair of nodes needs no further comparison; `None` if it does.
     ///
-    /// Facets of one plane that face each other show no overlap. At their edges one half-space of material touches
-    /// another. Otherwise the second facet of the wedge is in another node and shows the overlap.
+    /// Two facets in one plane that face each other prove no overlap, because their materials lie on opposite sides of
+    /// the plane. An edge of one facet can overlap the material behind the other one only through its neighbour across
+    /// this edge. This neighbour is not in the plane, so it is in another node, which shows the overlap.
     fn dismissal_reason(self, scene: &PairFrame, a: &Projected, b: &Projected) -> Option<Reason> {
         if are_separated(scene, a, b) {
             return Some(Reason::Disjoint);
@@ -469,8 +470,9 @@ pub(super) enum EdgeNeighbourhood {
 }
 
 impl EdgeNeighbourhood {
-    /// Returns the part of a body around an edge with its own facet along the second ray, and its neighbour, if there
-    /// is one, along the first. `None` for an edge of a closed shell without a neighbour.
+    /// Returns the part of a body around an edge. The second ray points along the facet whose edge it is, and the first
+    /// ray along the neighbour across the edge. Without a neighbour the first ray is ignored. `None` for an edge of a
+    /// closed shell without a neighbour.
     pub(super) fn around_edge(
         open: bool,
         has_across: bool,

@@ -135,8 +135,8 @@ impl Projected {
         least > place || least + self.cut_gain(side, local) > place
     }
 
-    /// Returns a lower bound of `m.x` from the uncut box, and the vector in the body frame along which the box was
-    /// measured.
+    /// Returns a lower bound of `m.x` from the box without its cuts, and from the slab if that is nearly parallel to
+    /// `m` (see [`Self::least_along`]). Also returns the vector in the body frame along which the box was measured.
     fn least_uncut(&self, side: &PlacedBody, m: DVec3, noise: f64) -> (f64, DVec3) {
         let along = self.axis.dot(m);
         let (mut rest, mut slab) = (m, 0.0);

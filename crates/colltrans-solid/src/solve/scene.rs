@@ -5,11 +5,11 @@
 //!   height. Its coordinates are rounded.
 //! - Exact signs are computed from setting frame coordinates: sums of products of matrix entries, vertices and
 //!   translations, without rounding.
-//! - A coordinate of the query frame has an error of at most [`PairFrame::noise`], `32 u S`. Coordinates are *exact* if all
-//!   axes of the query frame are axes of the body and of the world, and neither the translation nor its addition is
+//! - A coordinate of the query frame has an error of at most [`PairFrame::noise`], `32 u S`. Coordinates are *exact* if
+//!   all axes of the query frame are axes of the body and of the world, and neither the translation nor its addition is
 //!   rounded.
-//! - A pose's matrix `R` may deviate from a rotation by `1e-6`. [`PlacedBody::skew_bound`] bounds the effect on coordinates
-//!   along an axis `R n`, and [`PlacedBody::defect`] the rotation of a facet's normal. Derivation:
+//! - A pose's matrix `R` may deviate from a rotation by `1e-6`. [`PlacedBody::skew_bound`] bounds the effect on
+//!   coordinates along an axis `R n`, and [`PlacedBody::defect`] the rotation of a facet's normal. Derivation:
 //!   `docs/theory/solid-rounding.md`.
 
 use std::cell::OnceCell;
@@ -35,8 +35,8 @@ pub struct PlacedBody<'a> {
     pub(crate) moving: bool,
     /// Distance by which its facets are moved inwards.
     pub amount: f64,
-    /// Distance by which the bounds of its nodes are enlarged: the minimum gap, a little stretched, for the moving
-    /// body, and 0 for the fixed one.
+    /// Distance by which the bounds of its nodes are enlarged. For the moving body it is the minimum gap times a factor
+    /// slightly above 1, for poses that stretch axes and for rounding. For the fixed body it is 0.
     pub(crate) swell: f64,
     pub shrinking: Option<&'a OffsetField>,
     /// Maps the body frame to the setting frame, without the translation.
@@ -118,7 +118,8 @@ impl<'a> PairFrame<'a> {
         side.matrix * corner.local + side.offset[0]
     }
 
-    /// Returns this scene with the bodies offset by other amounts.
+    /// Returns this scene with the bodies offset by other amounts. The noise and the minimum gap remain those of this
+    /// scene.
     pub(crate) fn with_offsets(&self, moving: f64, fixed: f64) -> Self {
         let resized = |side: &PlacedBody<'a>, amount| {
             let amount = if side.solid.has_offset() { amount } else { 0.0 };
@@ -337,8 +338,8 @@ pub(crate) fn place_exactly<const N: usize>(
     })
 }
 
-/// Returns the noise of a configuration of this size, and its minimum gap: 0 if `min_gap` is too small to be distinguished
-/// from rounding errors.
+/// Returns the noise of a configuration of this size, and its minimum gap: 0 if `min_gap` is too small to be
+/// distinguished from rounding errors.
 pub(crate) fn noise_and_gap(size: f64, min_gap: f64) -> (f64, f64) {
     let min_gap =
         if Noise::for_size(size + min_gap).is_below_noise(min_gap) { 0.0 } else { min_gap };

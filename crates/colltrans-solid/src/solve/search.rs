@@ -168,7 +168,8 @@ impl NodeCache {
         first
     }
 
-    /// Returns the facets of a leaf that face the other body.
+    /// Returns the facets of a leaf that face along the direction for the moving body, or against it for the fixed one,
+    /// as positions among the stored facets.
     fn leaf_facets(&mut self, scene: &PairFrame, side: &PlacedBody, view: u32) -> Range<usize> {
         let &NodeView { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
         let [first, count] = parts.unwrap_or_else(|| {

@@ -29,12 +29,14 @@ const TIES: f64 = 0.5;
 /// Rounding error, in noises, of the difference of two heights along any normal. Derivation:
 /// `docs/theory/solid-rounding.md`.
 pub(crate) const HEIGHTS: f64 = 1.5;
-/// Additional rounding error of boxes, in noises: less than one for their centres and extents along a normal, and less
-/// than one for the heights of vertices that verify the margin.
+/// Rounding error, in noises, that is added to [`ROUNDING`] if a gap is computed from boxes. Centres and extents of the
+/// boxes along a normal have an error of less than one noise. The heights of vertices, with which a verification
+/// compares the margin, have an error of less than another noise.
 const BOXES: f64 = 2.0;
 
-/// Finds a plane, parallel to the direction, that separates the offset bodies. `None` if rounding errors leave every
-/// plane in doubt, and sometimes for large faces whose distance is at most the offset.
+/// Finds a plane, parallel to the direction, that separates the offset bodies by more than the minimum gap and the
+/// rounding errors. `None` if there is no such plane. Also `None` sometimes for large faces whose distance is at most
+/// the offset, because the search visits at most [`MAX_LEAVES`] leaves for a vertex.
 pub(crate) fn find_separation(scene: &PairFrame) -> Option<Separation> {
     let boxes = [&scene.moving, &scene.fixed].map(PlacedBody::offset_bounds);
     between_boxes(scene, &boxes).or_else(|| between_hulls(scene))
@@ -74,7 +76,8 @@ impl<'s, 'a> Boxes<'s, 'a> {
     }
 
     /// Returns the normal, orthogonal to the direction and to an edge of one of the boxes, along which the boxes are
-    /// farthest apart, from the moving body to the fixed one. Only its orthogonality to the direction is accurate.
+    /// farthest apart. It points from the moving body to the fixed one. It is orthogonal to the direction up to
+    /// rounding, but to the edge only approximately.
     ///
     /// `None` if the boxes overlap by more than `slack` along all these normals, or if the line along the direction
     /// through the centre of the moving box meets the fixed one.

@@ -1,7 +1,8 @@
 //! Exact signs of determinants of points, by a filter first.
 //!
-//! Let `x, y, z` be differences of two points whose coordinates have errors of at most `e = 2 noise` each, and `|x|`
-//! the sum norm in the plane and the maximum norm in space. Then the rounded determinant has an error of at most
+//! Each of `x, y, z` is the difference of two points. A coordinate of a point has an error of at most one noise, and a
+//! coordinate of a difference an error of at most `e = 2 noise`. Let `|x|` be the sum norm in the plane and the maximum
+//! norm in space. Then the rounded determinant has an error of at most
 //! - `2 e (|x| + |y| + e) + 8 u |x| |y|` in the plane,
 //! - `8 e (|y||z| + |x||z| + |x||y| + e (|x| + |y| + |z|) + e^2) + 48 u |x||y||z|` in space.
 //!
@@ -221,9 +222,9 @@ impl PairFrame<'_> {
             .unwrap_or_else(|| sign_of_large(&self.turn_about_wide::<LARGE_LIMBS>(axis, a, b, c)))
     }
 
-    /// Computes the determinant of [`Self::turn_about`] from the query frame, and a bound on its error. The axes of
-    /// that frame are orthogonal within a few `u`. Therefore a coordinate that is rotated back has an error of two
-    /// noises.
+    /// Computes the determinant of [`Self::projected_orientation`] from the query frame, and a bound on its error. The
+    /// axes of that frame are orthogonal within a few `u`. Therefore a coordinate of a point that is rotated back has
+    /// an error of at most two noises.
     fn rough_turn_about(&self, axis: usize, a: DVec3, b: DVec3, c: DVec3) -> (f64, f64) {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let back = self.frame.transpose();

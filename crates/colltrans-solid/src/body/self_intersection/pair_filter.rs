@@ -142,10 +142,11 @@ impl<'a> PairFilter<'a> {
         self.boxes[node].side_lengths().max_element()
     }
 
-    /// Checks whether the first node is a leaf that is longer than the second node by [`LENGTH_FACTOR`], and whose
-    /// facets avoid the box of the second node.
+    /// Checks whether the first node is a leaf that is more than [`LENGTH_FACTOR`] times as long as the second node,
+    /// and whose facets avoid the box of the second node.
     ///
-    /// This dismisses long triangles, because their boxes contain large parts of the solid.
+    /// The test is for long thin triangles. Their boxes contain large parts of the solid, so boxes alone would not
+    /// exclude the pair.
     fn leaf_avoids_box(&self, leaf: usize, node: usize) -> bool {
         let leaf_node = &self.placed.solid.nodes[leaf];
         leaf_node.is_leaf()

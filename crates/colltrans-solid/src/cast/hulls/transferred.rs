@@ -460,8 +460,8 @@ impl TransferSide<'_> {
         2.0 * self.max_displacement + LATERAL_NOISES * noise
     }
 
-    /// Finds the facet that clearly contains a point, of a face with the hull vertex `corner`; `None` if there is
-    /// none.
+    /// Finds the facet that contains a point, farther from its sides than their position is uncertain
+    /// ([`Self::edge_margin`]). The search starts at the hull vertex `corner`. `None` if it finds no such facet.
     fn facet_inside_face(&self, corner: u32, point: &SurfacePoint, noise: f64) -> Option<u32> {
         let near = self.edge_margin(noise);
         let triangle = self.surface.facet_at(corner, point, near)?;

@@ -25,7 +25,9 @@ pub(super) enum ContactState<M> {
 }
 
 /// Returns the first time found from `from` on at which the bodies meet, with its proof. The search is limited to times
-/// before `known_contact`, if given, or else before `end`. Returns `None` if it finds no such time.
+/// before `known_contact`, if given, or else before `end`. It stops when the bodies are separated after an undecided
+/// time, or later than [`MAX_SEPARATED_TIME`] after `from`. Returns `None` if it finds no contact, and if
+/// `known_contact` is at most [`MIN_WIDTH`] after `from`.
 pub(super) fn find_crossing_time<M>(
     from: f64,
     known_contact: Option<f64>,

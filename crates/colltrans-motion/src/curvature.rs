@@ -8,7 +8,8 @@
 //!   depth `w` adds `2 w |dn|^2`.
 //! - `C_P`: the maximum support of `P`, in its frame, along `W = alpha^2 n_across + 2 alpha k x dn`; `-W` for `Q`.
 //!   `alpha` is the angle of rotation about the axis `k`, `n_across` the part of the normal perpendicular to `k`.
-//! - *Loose* bound of `C_P`: `max |W|` times the distance of the body from its axis. It needs no support points.
+//! - *Loose* bound of `C_P`: `max |W|` times the largest distance of the body from its axis. No support points are
+//!   needed.
 //! - *Tight* bound of `C_P`, up to 2 radians: four support points, divided by a lower bound of `cos(alpha / 2)`.
 
 use glam::DVec3;

@@ -39,13 +39,13 @@
 //!
 //! The search is conservative advancement (Mirtich) with a curvature bound in place of a velocity bound. Steps are
 //! proportional to the square root of the remaining gap instead of the gap, because a rotation differs from a
-//! translation only to second order. Near a contact the search is Newton's method. See
+//! translation only to second order. Near a contact the sampled times converge to it quadratically. See
 //! `docs/theory/conservative-advancement.md` and `docs/theory/motion-bounds.md`.
 //!
 //! # Modules
 //!
-//! Each module uses only those before it: `proof`, `answer`, `span`, `curvature` and `arc`, `relative_motion`,
-//! `sample`, `search`, `verify`, `clearance`.
+//! In the order of dependence: `proof`, `answer`, `span`, `curvature` and `arc`, `relative_motion`, `sample`, `search`,
+//! `verify`, `clearance`. `crossing_time` searches for a proven contact after a search has ended.
 //!
 //! - `solid` is for solids. It searches both bounding volume trees and time, and treats two facets like two convex
 //!   bodies.
@@ -117,8 +117,9 @@ pub struct MotionCast<'a, B = ConvexPolyhedron> {
 }
 
 impl<'a, B> MotionCast<'a, B> {
-    /// Builds the cast of two bodies [with a motion](ConvexPolyhedron::with_motion) a motion or [at](ConvexPolyhedron::at) a pose,
-    /// both convex or both solids. For bodies of different kinds, see [`Self::between`](MotionCast::between_any).
+    /// Builds the cast of two bodies, both convex or both solids. Each of them has a
+    /// [motion](ConvexPolyhedron::with_motion) or [rests at a pose](ConvexPolyhedron::at). For bodies of different
+    /// kinds, see [`MotionCast::between_any`].
     ///
     /// # Errors
     /// Returns no error at present, because bodies and motions are checked when they are built.
@@ -188,7 +189,8 @@ impl MotionCast<'_> {
     /// tolerated.
     ///
     /// # Errors
-    /// Returns [`QueryError::PositionError`] if the bodies may meet and the error of computed places exceeds their size.
+    /// Returns [`QueryError::PositionError`] if the bodies may meet and the error of computed places exceeds their
+    /// size.
     pub fn first_contact(&self) -> Result<MotionOutcome, QueryError> {
         let found = self.first_contact_of_convex()?;
         let MotionOutcome::Undecided(undecided) = &found else { return Ok(found) };
@@ -197,6 +199,10 @@ impl MotionCast<'_> {
 
     /// Returns the cast of the same bodies as solids, without a tolerance. The minimum gap is increased by the distance
     /// of input points from the faces of the bodies.
+    ///
+    /// # Errors
+    /// Returns an error if the increased gap is negative because a depth is tolerated, or in the cases of
+    /// [`MotionCast::between_any`].
     #[doc(hidden)]
     pub fn as_solid_cast(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
         let moving = Moving { body: self.moving.body, motion: Cow::Borrowed(&*self.moving.motion) };

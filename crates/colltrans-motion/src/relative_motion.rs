@@ -61,7 +61,8 @@ pub(super) trait RelativeMotion<'a> {
     /// Returns the number of vertices that move on arcs in [`Self::gap_loss`]; 0 if that method has no bound.
     fn arc_vertex_count(&self) -> usize;
 
-    /// Returns an upper bound of the gap that a plane with a fixed normal loses from the first to the second time.
+    /// Returns an upper bound of the gap that a plane with a fixed normal has lost at any time between two instants,
+    /// since the first of them.
     fn gap_loss(&self, ends: [&InstantOf<'a, Self>; 2], normal: DVec3) -> f64;
 
     /// Returns the normal, from the moving to the fixed body, along the perpendicular from the axis of a rotating body

@@ -19,7 +19,8 @@ use colltrans_kernel::angle::sine_and_cosine;
 use colltrans_kernel::noise;
 use colltrans_kernel::range::MIN_MAGNITUDE;
 
-/// Error of a product of two rotations, as the displacement of a unit vector: nine entries, `3 u` each.
+/// Error of a product of two rotations, as the displacement of a unit vector. Nine entries with an error of `3 u` each
+/// have the Frobenius norm `9 u`. The constant is twice this number.
 const PRODUCT_ERROR: f64 = 9.0 * f64::EPSILON;
 
 /// Relative error of a value between two rows, from the difference, the share of time, the product and the sum.

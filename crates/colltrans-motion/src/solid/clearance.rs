@@ -1,8 +1,8 @@
 //! How far a solid can move along its motion, and the meaning of an overlap at the start.
 //!
-//! With [`StartOverlap::Ignore`], two facets that cross at the start count from the first sampled time on at which they
-//! are separated. All facets count only for contacts at which they face each other, so that a part inside another one
-//! can leave it.
+//! With [`StartOverlap::Ignore`], an overlap at the start changes which contacts count:
+//! - Two facets that cross at the start count only from the first sampled time on at which they are separated.
+//! - Any two facets count only for contacts at which they face each other. A part inside another one can thus leave it.
 
 use super::super::answer::{MotionFree, MotionOutcome, MotionSteps};
 use super::super::clearance::{

@@ -217,8 +217,9 @@ fn surface_contains(
     winding > 0
 }
 
-/// Checks whether a plane proves that a facet is farther from the origin than `off`. Tries the plane of the facet and
-/// the planes perpendicular to its corners and to the nearest points of its edges.
+/// Checks whether a plane proves that a facet is farther from the origin than `off`. Normals of the tried planes are
+/// those of the facet, and the vectors from the origin to its corners and to the nearest points of the lines through
+/// its edges.
 fn is_facet_beyond(corners: Corners, off: f64) -> bool {
     let [a, b, c] = corners;
     let edge = |u: DVec3, v: DVec3| u - (v - u) * (u.dot(v - u) / (v - u).length_squared());

@@ -6,7 +6,7 @@
 //! time.
 //!
 //! Each module uses only those before it: `tree` (a shrunk solid), `window` (one plane for two parts in an interval),
-//! `facets` (two facets as convex bodies), `inside` (a point inside both solids), `proof` (entries of a cover).
+//! `proof` (entries of a cover), `facets` (two facets as convex bodies), `inside` (a point inside both solids).
 //! `search`, `meeting` (proves contact at a time), `verify` and `clearance` use them.
 
 mod clearance;

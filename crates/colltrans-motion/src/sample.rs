@@ -14,9 +14,10 @@ use colltrans_convex::pair::{Pair, distance_from};
 use colltrans_convex::setting::{TwoBodies, VertexPair};
 use colltrans_convex::solve::nearest::{Difference, NearestPairs, nearest_points_within_share};
 
-/// Share of the size of the bodies beyond which a distance is computed roughly; and the accuracy of such a distance,
-/// relative to its part beyond that share. The exact distance is needed only near a contact.
+/// Share of the size of the bodies. A distance beyond this share is computed only roughly, because an exact one is
+/// needed only near a contact.
 const FAR_SHARE: f64 = 1e-3;
+/// Accuracy of such a distance, relative to its part beyond that share.
 const ROUGH_ACCURACY: f64 = 0.2;
 
 /// A distance sample: a plane between two bodies at one time.

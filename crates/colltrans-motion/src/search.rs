@@ -18,8 +18,9 @@ use super::proof::TimedPlane;
 use super::relative_motion::RelativeMotion;
 use super::sample::{Sample, SampleOf, Sampler};
 
-/// Maximum number of steps of a search, and the additional steps per radian of rotation.
+/// Maximum number of steps of a search between bodies that do not rotate.
 const MAX_STEPS: usize = 20_000;
+/// Additional number of steps for each radian of the rotation of both bodies together.
 const MAX_STEPS_PER_RADIAN: f64 = 200.0;
 
 /// Number of planes above which a search counts as long.
@@ -52,14 +53,16 @@ const MAX_ARC_VERTICES: usize = 1_000;
 /// Number of steps to the end of the interval above which steps count as short.
 const SHORT_STEPS: f64 = 64.0;
 
-/// Length of the first trial of a single plane, in steps; and the maximum share of its gap that a plane may lose up to
-/// the next one.
+/// Length of the first trial of a single plane, in steps.
 const FIRST_TRIAL_STEPS: f64 = 4.0;
+
+/// Maximum share of its gap that a single plane may lose up to the next plane.
 const MAX_LOSS_SHARE: f64 = 0.75;
 
-/// Share of its gap that a carried plane may lose up to the next sample; and the maximum share that a plane may lose up
-/// to the end of a span.
+/// Share of its gap that a carried plane is predicted to lose up to the next sample.
 const CARRIED_LOSS_SHARE: f64 = 0.7;
+
+/// Maximum share of its gap that a single plane may lose up to the end of a span.
 const MAX_END_LOSS_SHARE: f64 = 0.999;
 
 /// Maximum number of times that the distance of a sample from an indeterminate time is doubled.

@@ -64,8 +64,9 @@ pub enum MotionProofError {
         /// Tolerance of the query.
         requested: f64,
     },
-    /// The state of the solids at the start of the motion is not proven, or a proof about solids has other entries or
-    /// does not fit the query.
+    /// The proof does not show whether the solids overlap at the start of the motion. Also returned if a proof about
+    /// solids has further entries that its kind of answer does not have, or if the query cannot have such a proof, for
+    /// example because it tolerates a depth.
     #[error("the proof does not show whether the solids overlap at the start of the motion")]
     Start,
     /// An entry of a cover does not hold.

@@ -258,6 +258,7 @@ impl<'a> PathCast<'a> {
     }
 
     /// Finds all pairs of bodies that overlap at the start of the path, or whose distance is at most the minimum gap.
+    /// Pairs for which rounding errors hide this are not included.
     ///
     /// # Errors
     /// Returns an error if a body cannot be converted to a solid where a solid may contain it.

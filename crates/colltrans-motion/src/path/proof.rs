@@ -105,7 +105,8 @@ pub enum PathContactProof {
         /// Proof that the pieces meet.
         met: ContactProof,
     },
-    /// A point is inside both solids, for facets that meet face to face.
+    /// A point is inside both solids. It was guessed from two facets that have passed each other, or that lie in one
+    /// plane and face the same way.
     Point {
         /// Numbers of the pieces of two facets near the point.
         pieces: [usize; 2],

@@ -83,8 +83,8 @@ pub(crate) fn each_gap_of(
     each_gap(scene, (f.as_slice(), front.as_slice()), (g.as_slice(), back.as_slice()), take);
 }
 
-/// Calls `take` with each gap of an edge-on facet of one leaf and the contents of another leaf: its edge-on facets, and
-/// its facets that face the first leaf.
+/// Calls `take` with each gap of an edge-on facet of one leaf and the contents of the other leaf. These are its edge-on
+/// facets, and its facets that face along the direction for the moving body, or against it for the fixed one.
 pub(crate) fn each_gap(
     scene: &PairFrame,
     (uprights, front): (&[EdgeOnFacet], &[Facet]),

@@ -124,7 +124,8 @@ impl_from_proofs!(SceneProof { Nearest(NearestProof), Nearby(NearbyProof), Clear
 /// Queries with proofs.
 impl<'a> SceneQuery<'a> {
     /// Finds the nearest obstacle as [`Self::nearest`] does, with a proof. The proof covers all obstacles whose boxes
-    /// are nearer than the lower bound.
+    /// are nearer than the lower bound. Its own lower bound may be smaller than that of the answer. It is 0 if no
+    /// positive distance is proven for one of these obstacles.
     ///
     /// # Errors
     /// Returns the errors of [`Self::nearest`].
@@ -176,7 +177,7 @@ impl<'a> SceneQuery<'a> {
 
     /// Computes the clearance as [`Self::clearance`] does, with a proof. The proof covers all obstacles whose boxes do
     /// not exclude a contact before the lower bound, and the one that stops the body. If an obstacle overlaps the body,
-    /// it covers only this obstacle.
+    /// it covers only this obstacle. The lower bound of the proof may be smaller than that of the answer.
     ///
     /// # Errors
     /// Returns the errors of [`Self::clearance`].

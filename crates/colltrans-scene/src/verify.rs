@@ -1,7 +1,7 @@
 //! Checks proofs about one body among many.
 //!
-//! A check considers all obstacles one by one. Each satisfies the claim by its box, computed again from its vertices,
-//! or by a proof that names it. The check uses neither the tree nor a search.
+//! A check considers all obstacles one by one. Each satisfies the claim by its box, which is computed again from the
+//! placed body, or by a proof that names it. The check uses neither the tree of the obstacles nor a search.
 
 use std::collections::HashMap;
 

@@ -1,7 +1,8 @@
-//! A map of the faces of `M0` that lines along one direction enter.
+//! A map of the faces that lines along one direction enter, of `M0`, the Minkowski difference without translations.
 //!
-//! The map stores the corners of these faces, in a frame whose third axis is the direction, and the planes at the
-//! silhouette. A grid over the shadow stores, for each cell, the face at which a walk starts.
+//! The map stores the corners of these faces, in a frame whose third axis is the direction. At each edge of the
+//! silhouette it stores a plane parallel to the direction. A grid over the shadow stores, for each cell, the face at
+//! which a walk starts.
 
 use glam::{DVec2, DVec3};
 
@@ -18,8 +19,8 @@ use colltrans_convex::cast::{Cast, clearance_by_casts, contact_range_by_casts};
 use colltrans_convex::setting::check_direction;
 use colltrans_convex::setting::error::QueryError;
 
-/// Casts of one pair with fixed rotations along one direction: [`FixedRotations::for_direction`]. Casts along another direction
-/// are answered by [`FixedRotations`].
+/// Casts of one pair with fixed rotations along one direction: [`FixedRotations::for_direction`]. Casts along another
+/// direction are answered by [`FixedRotations`].
 #[derive(Debug)]
 pub struct DirectionMap<'f, 'a> {
     rotations: &'f FixedRotations<'a>,

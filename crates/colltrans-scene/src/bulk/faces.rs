@@ -35,8 +35,8 @@ pub(super) struct Faces {
     pub(super) planes: Vec<Plane>,
     /// Index of the first side of each face, with one entry past the end.
     starts: Vec<u32>,
-    /// Sides of all faces. They are clockwise as seen from outside, and therefore counter-clockwise as seen along a
-    /// direction that enters the face.
+    /// Sides of all faces. They are clockwise as seen from outside. Therefore they are counter-clockwise in lateral
+    /// coordinates of a right-handed frame whose third axis is a direction that enters the face.
     sides: Vec<Side>,
     pub(super) points: Vec<DVec3>,
     /// Maximum reduction of the distance of the bodies by input points outside their faces.

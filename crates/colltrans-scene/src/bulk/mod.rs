@@ -38,22 +38,21 @@ const MIN_CASTS: usize = 500;
 /// Two bodies with fixed rotations, for casts from many positions and along many directions.
 ///
 /// The faces of the Minkowski difference are computed once. This pays off after about 500 casts plus one for each
-/// vertex pair
-/// ([`Self::break_even_casts`]). A cast of bodies with up to 64 vertices then takes at most a third of the time. A cast along
-/// a direction that is used repeatedly ([`Self::for_direction`]) takes a sixth. Answers have the certificates of ordinary
-/// casts, and [`Cast::verify`] checks them.
+/// vertex pair ([`Self::break_even_casts`]). A cast of bodies with up to 64 vertices then takes at most a third of the
+/// time. A cast along a direction that is used repeatedly ([`Self::for_direction`]) takes a sixth. Answers have the
+/// certificates of ordinary casts, and [`Cast::verify`] checks them.
 ///
 /// These casts are answered by the ordinary search instead:
 /// - casts of other bodies or other rotations,
 /// - casts that the faces do not decide with certainty, because the bodies only touch or graze, or because the line
 ///   passes through an edge of the difference,
-/// - casts of flat bodies, and of bodies with more than 16,384 vertex pairs,
+/// - casts of two flat bodies (polygons, segments or points), and of bodies with more than 16,384 vertex pairs,
 /// - casts with [`Solver::Cta`] or a minimum gap.
 ///
-/// The outcome is of the same kind as that of the [`Cast`], with the same true bounds. The last digits may differ,
-/// because they are computed from another triangle of the same face. For separated bodies the plane and its margin are
-/// different, as with a [`Tracker`](colltrans_convex::Tracker). The bits depend only on the bodies, the rotations and
-/// the cast. They do not depend on other casts, their order, threads or the platform.
+/// The outcome is of the same kind as that of the [`Cast`], and its bounds are proven as well. The last digits may
+/// differ, because they are computed from another triangle of the same face. For separated bodies the plane and its
+/// margin are different, as with a [`Tracker`](colltrans_convex::Tracker). The bits depend only on the bodies, the
+/// rotations and the cast. They do not depend on other casts, their order, threads or the platform.
 ///
 /// ```
 /// use colltrans::glam::{DQuat, DVec3};
@@ -97,7 +96,7 @@ impl<'a> FixedRotations<'a> {
     }
 
     /// Returns the approximate number of casts after which computing the faces pays off. Returns `None` for bodies
-    /// whose faces are not computed.
+    /// whose faces are not computed: two flat bodies, or more than 16,384 vertex pairs.
     pub fn break_even_casts(moving: &ConvexPolyhedron, fixed: &ConvexPolyhedron) -> Option<usize> {
         let pairs = moving.vertices().len() * fixed.vertices().len();
         let flat = moving.dimension().max(fixed.dimension()) < 3;

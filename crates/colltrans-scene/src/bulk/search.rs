@@ -20,7 +20,7 @@ const MAX_WALK_FACES: u32 = 256;
 pub(super) trait LineView {
     /// Type of the side of a face.
     type Side;
-    /// Returns the sides of a face, counter-clockwise.
+    /// Returns the sides of a face, counter-clockwise in the lateral coordinates of [`Self::corner_coordinates`].
     fn sides(&self, face: u32) -> &[Self::Side];
     /// Returns the start of a side, with the coordinate along the direction last.
     fn corner_coordinates(&self, side: &Self::Side) -> DVec3;

@@ -55,7 +55,9 @@ pub struct SceneClearance {
 
 impl SceneClearance {
     /// Returns the translation by which the moving body can safely move past all obstacles, in multiples of the
-    /// direction. It is infinity if nothing stops the body, and `None` if it overlaps an obstacle at the start.
+    /// direction. If nothing stops the body, it is infinity, or the end of the query
+    /// ([`SceneQuery::clearance_before`](super::SceneQuery::clearance_before)). `None` if the body overlaps an obstacle
+    /// at the start.
     pub fn safe_translation(&self) -> Option<f64> {
         let overlaps = self.stop.is_some_and(|(_, stop)| stop.distance().is_none());
         (!overlaps).then_some(self.lower)

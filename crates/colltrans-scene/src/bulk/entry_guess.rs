@@ -1,4 +1,4 @@
-//! Guesses the face where a line enters `M0`, for the start of a walk.
+//! Guesses the face where a line enters `M0`, the Minkowski difference without translations, for the start of a walk.
 //!
 //! The inertia ellipsoid of `M0` is transformed to the unit ball around its centre. The direction from the centre to
 //! the point where the line enters the ball is looked up in a table over the sides of a cube. The table has the face

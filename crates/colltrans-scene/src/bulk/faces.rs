@@ -1,4 +1,4 @@
-//! The faces of `M0`, with bounds that hold for all translations.
+//! The faces of `M0`, the Minkowski difference without translations, with bounds that hold for all translations.
 //!
 //! The hull of all rounded vertex differences only proposes planes. The least coordinate of `M0` along the normal of
 //! each plane is computed from all vertices of both bodies, nearly without rounding.

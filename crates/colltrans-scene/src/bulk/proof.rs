@@ -1,4 +1,5 @@
-//! Builds an answer with its certificate from a face of `M0`, or from two faces that meet at its silhouette.
+//! Builds an answer with its certificate from a face of `M0`, the Minkowski difference without translations, or from
+//! two faces that meet at its silhouette.
 //!
 //! `docs/theory/rounding.md` derives the error bounds, under *Polygon* and *Rim*.
 

@@ -1,4 +1,4 @@
-//! Walks over the faces of `M0` to the one that a line enters.
+//! Walks over the faces of `M0`, the Minkowski difference without translations, to the face that a line enters.
 //!
 //! A face is *entered* if its inward normal has a positive component along the direction. The projections of the
 //! entered faces tile the shadow of `M0`. The walk crosses the side beyond which the line is farthest.

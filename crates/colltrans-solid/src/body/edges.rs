@@ -1,8 +1,9 @@
 //! Adjacency of triangles across edges, in linear time.
 //!
 //! Half-edge `3 t + k` goes from corner `k` of triangle `t` to the next corner. Half-edges are sorted into buckets by
-//! their smaller vertex. At an edge with more than two facets, facets are paired such that each pair bounds a wedge
-//! of material that contains no other facet.
+//! their smaller vertex. At an edge with more than two facets, as many in each direction, facets are paired such that
+//! each pair bounds a wedge of material that contains no other facet. If the numbers in the two directions differ,
+//! facets are paired in the order of the input. The remaining ones are open or inconsistent.
 
 use std::cmp::Ordering;
 

@@ -7,9 +7,9 @@
 //! - the slab `low <= n . x <= high` of all vertices. It is rounded, and users of the slab account for the error.
 //!
 //! The tree is built from the top ([`split`](mod@colltrans_kernel::split)). The children of node `i` are adjacent, at
-//! `i + skip` and `i + skip + 1`, because a search reads both. The nodes below the first child follow, then those
-//! below the second. `skip` is relative, so that threads build subtrees that are joined end to end. The tree does not
-//! depend on the number of threads.
+//! `i + child_offset` and `i + child_offset + 1`, because a search reads both. The nodes below the first child follow,
+//! then those below the second. `child_offset` is relative, so that threads build subtrees that are joined end to end.
+//! The tree does not depend on the number of threads.
 
 use std::thread;
 

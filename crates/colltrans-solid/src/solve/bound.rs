@@ -21,11 +21,11 @@ const MIN_LENGTH_RATIO: f64 = 4.0;
     serde(rename_all = "snake_case")
 )]
 pub enum Reason {
-    /// No facet of the moving body faces along the direction.
+    /// No facet of the moving body's node faces along the direction.
     MovingFacesAway,
-    /// No facet of the fixed body faces against the direction.
+    /// No facet of the fixed body's node faces against the direction.
     FixedFacesAway,
-    /// The interiors of their shadows are disjoint.
+    /// The interiors of the nodes' shadows are disjoint.
     ShadowsApart,
     /// No gap is positive, and no pair of facets has a gap of zero over its whole common shadow. Therefore no pair
     /// blocks.
@@ -215,8 +215,8 @@ pub(crate) fn are_separated(scene: &PairFrame, a: &Projected, b: &Projected) -> 
         || leaf_avoids(scene, (q, b), (p, a))
 }
 
-/// Checks whether the first node is a leaf, longer than the second node by [`MIN_LENGTH_RATIO`], whose facets certainly
-/// have no point in the box of the second node.
+/// Checks whether the first node is a leaf that is more than [`MIN_LENGTH_RATIO`] times as long as the second node, and
+/// whose facets certainly have no point in the box of the second node.
 ///
 /// The box of a long thin facet contains large parts of the other body, for example all teeth of a comb.
 fn leaf_avoids(

@@ -154,7 +154,7 @@ impl EdgeOnFacet {
         &self.corners[self.ends[k]]
     }
 
-    /// Returns an axis of the world such that [`Scene::drift_sign`] along it orders positions along the shadow.
+    /// Returns an axis of the world such that [`PairFrame::drift_sign`] along it orders positions along the shadow.
     fn ordering_axis(&self, scene: &PairFrame) -> usize {
         let apart = |axis: usize| {
             (0..3).any(|k| {

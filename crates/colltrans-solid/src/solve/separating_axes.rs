@@ -1,7 +1,7 @@
 //! Directions along which a query compares nodes: separating axes of boxes that move.
 //!
-//! - A plane with a normal `n`, `n.d = 1`, bounds the gap of two sets: `h_b - h_a` is at least the least `n.x` of one
-//!   minus the largest `n.x` of the other.
+//! - A plane with a normal `n`, `n.d = 1`, bounds the gap `h_b - h_a` of a set `a` of the moving body and a set `b` of
+//!   the fixed body. The gap is at least the least `n.x` of `b` minus the largest `n.x` of `a`.
 //! - The best plane between two boxes is one of 15: its normal is an axis of a box, or orthogonal to an axis of each.
 //!   All boxes of one body have the same axes. Therefore the extent of a node along each normal is computed once, and a
 //!   pair of nodes needs fifteen sums. The 16th normal is the direction.
@@ -9,7 +9,8 @@
 //!   (Gottschalk, Lin and Manocha, "A hierarchical structure for rapid interference detection", SIGGRAPH 1996, for
 //!   boxes that do not move).
 //! - Cuts make a node smaller than its box. Its extent is measured along `n` for the moving body and along `-n` for the
-//!   fixed one. A negative sum of both is the separation. Rounding: `docs/theory/solid-rounding.md`.
+//!   fixed one. A negative sum of both proves a separation by its absolute value. Rounding:
+//!   `docs/theory/solid-rounding.md`.
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 

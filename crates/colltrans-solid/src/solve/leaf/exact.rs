@@ -15,7 +15,7 @@ use colltrans_kernel::integer::{Integer, LARGE_LIMBS, SMALL_LIMBS, determinant, 
 /// Maximum error, in noises, of a gap that counts as exact except for its last roundings.
 const UNSEEN: f64 = f64::EPSILON / 4.0;
 
-/// Computes the gap from exact signs at those corners of the common shadow for which `min_gap` returns true.
+/// Computes the gap from exact signs at those corners of the common shadow for which `keep` returns true.
 pub(super) fn exact_range(
     scene: &PairFrame,
     f: &Facet,

@@ -1,7 +1,8 @@
 //! Pairs of facets with a minimum gap.
 //!
 //! - Each pair is decided by the cast of a point against the difference of two triangles, grown by a ball
-//!   ([`min_gap`](colltrans_convex::solve::min_gap)). The bounds of nodes are enlarged by the gap (`Side::swell`).
+//!   ([`min_gap`](colltrans_convex::solve::min_gap)). The bounds of nodes of the moving body are enlarged by the gap
+//!   (`PlacedBody::swell`).
 //! - The distance first falls below the gap between a facet that faces along the direction and one that faces against
 //!   it. Let `p`, `q` be the nearest points, and `n`, with `n.d > 0`, the normal from one to the other. If no facet at
 //!   `p` faced along `d`, `d` would lead into the body, but no part of the body is beyond the plane across `n`.

@@ -8,9 +8,8 @@
 //!   of sides.
 //! - The pair *counts* if the largest gap is positive, or the gap is zero over the whole common shadow.
 //! - All decisions are exact. [`rounded`] gaps are used where their error bounds permit. Otherwise [`exact`] computes
-//!   the signs of `outside(g, f_i)`, `outside(f, g_j)`, and `-outside(p, q, r, s) turn(p, q, s)` for side `p q` of `f`
-//!   under side `r s` of `g`. [`facet`] defines facets and the orientations of their sides. [`min_gap`] computes the gaps
-//!   of pairs with a minimum gap.
+//!   the sign of the gap at each corner of the common shadow, as the sign of a quotient of two determinants. [`facet`]
+//!   defines facets and the orientations of their sides. [`min_gap`] computes the gaps of pairs with a minimum gap.
 
 mod exact;
 mod facet;

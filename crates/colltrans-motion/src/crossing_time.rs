@@ -4,8 +4,9 @@
 //! pieces may cross a little later. The search samples times at doubling distances after the end. Between the last time
 //! without proof and the first time with proof it bisects.
 
-/// Maximum number of doublings, and the first distance.
+/// Maximum number of doublings of the distance from the end of the search.
 const MAX_DOUBLINGS: i32 = 50;
+/// First distance, as a time.
 const FIRST_DISTANCE: f64 = 4.0 * f64::EPSILON;
 
 /// Distance after which the search stops when the bodies are separated.

@@ -125,14 +125,14 @@ fn volume_sign([x, y, z]: [DVec3; 3], e: f64) -> i32 {
     if value.abs() > error { value.signum() as i32 } else { 0 }
 }
 
-/// Number of equal intervals at whose ends two facets are sampled until they are separated; and the number of
-/// bisections of the interval before the first sample at which they are.
+/// Number of equal intervals at whose ends two facets are sampled until they are separated.
 const SAMPLES: i32 = 8;
+/// Number of bisections of the interval before the first sample at which they are separated.
 const BISECTIONS: i32 = 40;
 
-/// Time after an ignored contact of the next sample, as a share of the span; doubled at each contact. And the maximum
-/// number of such contacts.
+/// Time from an ignored contact to the next sample, as a share of the span. It doubles at each such contact.
 const FIRST_RETRY_SHARE: f64 = 1e-9;
+/// Maximum number of ignored contacts of two facets in a span. Later contacts in this span are ignored as well.
 const MAX_RETRIES: i32 = 32;
 
 /// Maximum cosine between normal and direction of motion at which a facet counts as parallel to the motion.

@@ -18,9 +18,10 @@ use colltrans_kernel::descent::{node_to_split, pair_with_node};
 /// Angle in radians above which an interval is halved.
 const MAX_TURN: f64 = 0.7;
 
-/// Maximum distance that two parts move in an interval, as a multiple of their size; and that of two facets. Longer
-/// intervals are halved.
+/// Maximum distance that two parts move in an interval, as a multiple of their size. If they move farther, the interval
+/// is halved.
 const MAX_TRAVEL_RATIO: f64 = 4.0;
+/// Maximum distance that two facets move in an interval, as a multiple of their size.
 const MAX_FACET_TRAVEL_RATIO: f64 = 8.0;
 
 /// Length of an interval below which it is not halved. Its facets are searched in pairs.

@@ -128,7 +128,8 @@ impl SolidOptions {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SolidOverlap {
-    /// One place of the overlap of the offset bodies: two facets, or a shell inside the other body.
+    /// One place of the overlap of the offset bodies: two facets, or a shell inside the other body. With a minimum gap,
+    /// two facets that are nearer than the gap.
     pub place: Overlap,
     /// Upper bound of the least tolerance at which the bodies do not overlap. `None` if there is none, for example
     /// for an overlap with an open shell. See [`SolidCast::least_tolerance`].
@@ -150,12 +151,14 @@ pub struct SolidFree {
     pub steps: SolidSteps,
 }
 
-/// Result of a test whether two solids have a common point.
+/// Result of a test whether two solids have a common point. With a minimum gap, the test is whether their distance is
+/// certainly at most the gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SolidIntersection {
-    /// Two facets with a common point, or a shell inside the other body. `None` if the bodies do not meet.
+    /// Two facets with a common point, or not farther apart than the minimum gap, or a shell inside the other body.
+    /// `None` if the test fails.
     pub place: Option<Overlap>,
     /// Work done.
     pub steps: SolidSteps,

@@ -61,8 +61,8 @@ pub struct SolidCertificate {
 pub enum StartProof {
     /// Stated by the caller in [`SolidOptions::overlapping`], without a proof.
     Assumed,
-    /// The surfaces do not cross. The cover does not show that no shell is inside the other body; verification
-    /// tests this again.
+    /// The surfaces do not cross. With a minimum gap, no two facets are certainly nearer than the gap. The cover does
+    /// not show that no shell is inside the other body. Verification tests this again.
     Apart(Cover),
     /// The bodies overlap at this place.
     Overlapping(Overlap),

@@ -105,7 +105,7 @@ pub trait SolidCast<'a>: Sized {
     ) -> Option<Bounded>;
 
     /// Checks whether the interiors of the offset bodies have a common point, or an open shell passes through the
-    /// other body.
+    /// other body. With a minimum gap, also checks whether two facets are certainly nearer than the gap.
     fn overlaps(&self) -> bool;
 
     /// Finds an overlap of the offset bodies and computes its least tolerance; `None` if they do not overlap. The

@@ -43,7 +43,8 @@ pub enum Overlap {
     FixedInside(u32),
 }
 
-/// Finds a place where the interiors intersect or an open shell passes through the other body; `None` if there is no
+/// Finds a place where the interiors intersect or an open shell passes through the other body. With a minimum gap,
+/// finds two facets that are certainly nearer than the gap, or a shell inside the other body. `None` if there is no
 /// such place.
 #[inline]
 pub fn find_overlap(scene: &PairFrame, steps: &mut SolidSteps) -> Option<Overlap> {
@@ -152,7 +153,8 @@ pub(crate) fn leaves_apart(scene: &PairFrame, a: &Node, b: &Node) -> bool {
     search_leaves(scene, a, b, PairTest::overlap_test(scene)).is_none()
 }
 
-/// Finds a place where the solids, as closed sets, have a common point; `None` if there is no such place.
+/// Finds a place where the solids, as closed sets, have a common point. With a minimum gap, two facets whose distance
+/// is certainly at most the gap count as well. `None` if there is no such place.
 pub(crate) fn find_contact(scene: &PairFrame, steps: &mut SolidSteps) -> Option<Overlap> {
     let [a, b] = Projected::root_bounds(scene);
     let mut count = |entry| steps.count_pair(entry);

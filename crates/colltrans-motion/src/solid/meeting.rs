@@ -1,10 +1,10 @@
 //! Proves that two solids meet at one time: two facets cross, or a point is inside both. With a minimum gap, two facets
 //! must have points that are not farther apart than the gap.
 //!
-//! All pairs of facets that no plane separates at this time are tested, not only the pair that ended the search. Two
-//! facets that have passed each other are separated again, for example those of a face that has sunk into another one.
-//! Therefore the search also tests points inside both solids. A point or a segment that is entirely inside a solid
-//! crosses no facet, so its points are tested as well.
+//! All pairs of facets that no plane separates at this time are tested, not only the pair that ended the search. This
+//! is necessary because two facets that have passed each other are separated again, for example those of a face that
+//! has sunk into another one. A point or a segment that is entirely inside a solid crosses no facet either, so whether
+//! it is inside is tested as well.
 
 use super::super::crossing_time::ContactState;
 use super::super::sample::Sampler;

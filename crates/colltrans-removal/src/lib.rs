@@ -1,13 +1,13 @@
 //! Directions along which a solid can be removed from another one ([`directions`]), and removal paths in several
 //! moves ([`path`]).
 //!
-//! - `free` decides for every direction of the sphere whether a translation along it is free. Its module head
-//!   lists the data flow.
-//! - `ways` searches a graph of placements. `pairs` classifies pairs of nodes by displacement, `openings`
-//!   finds where along one move another move becomes possible, `search` explores the placements, `proof` and
-//!   `verify` certify each leg by casts.
-//! - `cells` finds cells of displacements in which the bodies overlap. `enclosed` uses them to prove that no
-//!   path exists.
+//! - `directions` classifies every direction of the sphere as free, blocked or undecided. Its module head lists
+//!   the data flow.
+//! - `path` searches a graph of placements. `path::pairs` casts two bodies at a displacement and caches the
+//!   result, `openings` finds where along one move another move becomes possible, and `search` explores the
+//!   placements. `proof` certifies each leg by casts, and `verify` checks these certificates.
+//! - `path::cells` describes cells of displacements, and tests whether an edge and a facet block a cell.
+//!   `path::enclosed` uses blocked cells to prove that no path exists.
 
 #![allow(
     rustdoc::private_intra_doc_links,

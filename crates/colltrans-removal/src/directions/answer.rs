@@ -373,8 +373,9 @@ impl<'a> FreeDirections<'a> {
     /// Checks the claim about every cell on its own, without a search.
     ///
     /// # Errors
-    /// Returns [`FreeError::NotProven`] for the first box or cell whose claim is not proven. If an overlap at
-    /// the start is ignored, every box is such a claim.
+    /// Returns [`FreeError::NotProven`] for the first box that is not proven to be inside its body, or the first
+    /// cell whose claim is not proven. If an overlap at the start is ignored, boxes inside the bodies prove
+    /// nothing, and an answer that has one is rejected.
     pub fn verify(&self) -> Result<(), FreeError> {
         for (moving, boxes) in [(true, &self.boxes[0]), (false, &self.boxes[1])] {
             // Bodies whose present overlap is ignored are not blocked by boxes inside them.

@@ -1,5 +1,6 @@
-//! Two placed solids for queries about all directions: vertices in the setting frame, and for each body a
-//! tree whose leaves are single facets.
+//! Two placed solids for queries about all directions: for each body its vertices, and a tree of bounds whose
+//! leaves are single facets. Coordinates are in the setting frame, which has the axes of the world and its
+//! origin at the moving body's translation.
 
 use glam::DVec3;
 

@@ -114,7 +114,7 @@ impl OrientationSigns {
 
     /// Checks whether the plane through `f_k` and the edge of `g` from `b` has all differences on one side.
     /// Returns `Some(true)` if this is the negative side of `det[g_b - f_k, g_(b+1) - f_k, d]`, and `None` if
-    /// there are differences on both sides.
+    /// there are differences on both sides or all are in the plane.
     fn side_at_moving_vertex(&self, k: usize, b: usize) -> Option<bool> {
         let others = [self.edges[k][b], self.edges[(k + 2) % 3][b].reverse()];
         common_side(self.moving[k], others.map(Ordering::reverse))
@@ -122,7 +122,7 @@ impl OrientationSigns {
 
     /// Checks whether the plane through `g_k` and the edge of `f` from `a` has all differences on one side.
     /// Returns `Some(true)` if this is the negative side of `det[f_a - g_k, f_(a+1) - g_k, d]`, and `None` if
-    /// there are differences on both sides.
+    /// there are differences on both sides or all are in the plane.
     fn side_at_fixed_vertex(&self, k: usize, a: usize) -> Option<bool> {
         // outside(g_k, f_a, f_(a+1), g_l), an even permutation of outside(f_a, g_k, g_l, f_(a+1)).
         let others = [self.edges[a][k], self.edges[a][(k + 2) % 3].reverse()];

@@ -2,7 +2,7 @@
 //!
 //! Pieces of neighbouring cells share part of a cell's side. The forms of such sides are exact, because they
 //! are computed from differences of corners. Cuts can leave pieces that are narrower than rounding along a
-//! boundary. Such a sliver is ignored if it touches another piece, because its outer side cannot be
+//! boundary. Such a sliver is ignored if it touches a wider piece, because its outer side cannot be
 //! distinguished from its inner one. No decision about a direction depends on this module.
 
 use std::f64::consts::PI;

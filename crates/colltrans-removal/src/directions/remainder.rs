@@ -1,7 +1,7 @@
 //! The remainder of a cell outside some cones: convex pieces with exact corners.
 //!
-//! A corner is a corner of the cell or the intersection of two lines. Its side of a third line is the sign of
-//! a determinant of three forms. Cones are open, therefore pieces are closed. Between two cones an arc or a
+//! A corner is a corner of the cell or the intersection of two lines. In general its side of a third line is
+//! the sign of a determinant of the linear forms of the three lines. Cones are open, therefore pieces are closed. Between two cones an arc or a
 //! point may remain: a piece with two corners or with one.
 
 use std::cmp::Ordering;

@@ -1,9 +1,10 @@
-//! Rectangles of directions, and a test which pairs of nodes block no direction of a rectangle.
+//! Rectangles of directions, and a conservative test whether a pair of nodes blocks no direction of a rectangle.
 //!
-//! A pair of facets blocks an open cone. If the cone contains a direction of a rectangle with a non-empty
-//! interior, it contains one of the interior, too. Therefore contacts with the boundary alone are ignored for
-//! such rectangles. They count for rectangles that are a segment or a point. Facets block at differences `g -
-//! f = t d` with `t > 0`, or they are coplanar and share a point.
+//! Two facets `f` and `g` block a direction `d` only if a difference `g - f` of their points equals `t d` with
+//! `t > 0`, or if they are coplanar and share a point. The directions that they block are an open cone. If the
+//! cone contains a direction of a rectangle with a non-empty interior, it also contains a direction of this
+//! interior. Therefore a cone that reaches only the boundary of such a rectangle is ignored. It counts for a
+//! rectangle that is a segment or a point.
 
 use glam::DVec3;
 
@@ -56,7 +57,8 @@ impl Window {
     }
 
     /// Checks whether a box of differences contains neither zero nor a positive multiple of a direction of
-    /// the rectangle.
+    /// the rectangle. For a rectangle with interior, multiples of directions on its boundary alone are ignored.
+    /// Returns `false` if rounding leaves this uncertain.
     fn is_missed_by_box(&self, low: DVec3, high: DVec3) -> bool {
         if low.max_element() <= 0.0 && high.min_element() >= 0.0 {
             return false;

@@ -8,7 +8,8 @@
 //!
 //! The search starts with one cell. While open cells lead from the initial placement to the boundary, it
 //! divides the largest of them in which surfaces may meet. If there is no such cell, the open cells propose a
-//! path, which casts have to prove. Derivation: `docs/theory/displacement-cells.md`.
+//! path, which casts have to prove. At the maximum depth the search ends without a result. Derivation:
+//! `docs/theory/displacement-cells.md`.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap, HashSet, VecDeque};

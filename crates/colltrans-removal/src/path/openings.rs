@@ -1,15 +1,15 @@
 //! Positions along a first move at which a second move is possible.
 //!
-//! `A` is displaced by `s` and moves along `d`. After the length `t` it moves along `e` by `far`, without a
-//! rotation. Facets `f` of `A` and `g` of `B` with `n_f.e > 0 > n_g.e` block this second move if
-//! `t d + tau e` with `0 < tau < far` is inside the convex set `g - f - s`. The slice of this set is a
-//! polygon in `(t, tau)`, whose projection is an **open interval of `t`**. The complement of all intervals is
-//! closed. It contains the openings, which may be single values.
+//! `A` is displaced by `s` and moves along `d` by the length `t`, then along `e` by the length `far`. Facets `f`
+//! of `A` and `g` of `B` with `n_f.e > 0 > n_g.e` block the second move if `t d + tau e` is inside the convex set
+//! `g - f - s` for a `tau` between 0 and `far`. The plane of `d` and `e` cuts this set in a polygon with
+//! coordinates `(t, tau)`. The projection of its part between `tau = 0` and `tau = far` is an **open interval of
+//! `t`**. The complement of all intervals is closed. It consists of the openings, which may be single values.
 //!
-//! - An interval is not clipped to the range of `t`, because its clipped end would be an opening.
-//! - The box of differences of two nodes is sliced in the same way. A pair whose interval is already covered
-//!   is dismissed.
-//! - The pair with the widest interval is visited first.
+//! - The interval of two facets is not clipped to the range of `t`, because its clipped end would be an opening.
+//! - The box of differences of two nodes is sliced in the same way. A pair of nodes whose interval one blocked
+//!   interval covers is dismissed.
+//! - Of the pairs of children of a pair of nodes, the one with the widest interval is visited first.
 
 use glam::DVec3;
 

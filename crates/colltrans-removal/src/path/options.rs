@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Options of [`WaysOut`](super::RemovalSearch). Fields may be added, therefore start from the default options.
+/// Options of [`RemovalSearch`](super::RemovalSearch). Fields may be added, therefore start from the default options.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -25,7 +25,7 @@ pub struct RemovalOptions {
     /// limit can be exceeded slightly.
     pub looks: u64,
     /// Maximum number of displacement cells of the search for a proof that two bodies have no removal path; 0
-    /// disables this search. Up to each attempt, [`CELLS_FOR_A_PLACE`](Self::CELLS_PER_PLACEMENT) cells are
+    /// disables this search. Up to each attempt, [`CELLS_PER_PLACEMENT`](Self::CELLS_PER_PLACEMENT) cells are
     /// allowed for each explored placement. When no placement is left or a limit is reached, the full number
     /// is allowed.
     pub cells: usize,

@@ -22,8 +22,8 @@ const CAST_END: f64 = 1.0 + 1.0 / (1 << 30) as f64;
 pub struct LegProof {
     /// Index of the moving body, and of the one at rest.
     pub bodies: [usize; 2],
-    /// Certificate of the cast along the motion. The cast ends slightly beyond 1, or has no end for the last
-    /// leg.
+    /// Certificate of the cast along the motion. The cast ends slightly beyond the end of the motion. For the
+    /// last leg it has no end.
     pub certificate: SolidCertificate,
 }
 

@@ -1,15 +1,17 @@
 //! Search over placements: fewest legs first, or best first with preference for regions with few placements.
 //!
-//! At a placement each pair of bodies is cast along all directions. Bodies hit within a minimum move join the
-//! group. A group that never hits the others is removed, which ends the search. Otherwise it stops within
-//! openings for other directions and before the first contact. If two bodies have no placement left, last
-//! legs along any free direction are tried.
+//! At a placement, each pair of bodies is cast along all directions. A body moves together with the bodies
+//! that it hits within the minimum length of a move, as a *group*. If a group never hits the other bodies and
+//! casts certify all legs, the path is found. Otherwise the group stops within openings for other directions
+//! and just before the first contact. After two bodies have no unexplored placement left, last legs along any
+//! free direction are tried.
 //!
-//! - The base, a fixed body or the largest one, never moves. The other bodies move backwards instead.
-//! - Displacements lie on a grid that is finer than the slack. Their differences are exact.
-//! - Placements are equal if all bodies are in the same cells of a coarse grid and the same moves are
+//! - The base, a fixed body or the largest one, never moves. Instead of a group with the base, all other bodies
+//!   move in the opposite direction.
+//! - Displacements lie on a grid that is finer than the distance from contacts. Their differences are exact.
+//! - Two placements are equal if all bodies are in the same cells of a coarse grid and the same moves are
 //!   possible.
-//! - A group does not continue along the line on which it came.
+//! - A group does not continue along the line of the leg that it has just made.
 
 use std::cmp::Reverse;
 use std::collections::hash_map::DefaultHasher;

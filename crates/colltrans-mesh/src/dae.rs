@@ -5,8 +5,8 @@
 //! - Each node with geometry is a group with the name of the node.
 //! - Triangles, strips, fans, `polylist` and `polygons` are read. Lines, materials, cameras, lights and
 //!   animations are skipped. Skins have their rest shape.
-//! - A few lines can place a shape arbitrarily often. Therefore the placed faces are limited to one per byte of
-//!   the file and [`MAX_REPEATED`] more.
+//! - A few lines can place a shape arbitrarily often. Therefore the placed faces and the placed vertices are
+//!   limited to one per byte of the file and [`MAX_REPEATED`] more.
 
 use std::collections::HashMap;
 
@@ -18,7 +18,7 @@ use crate::mesh::Mesh;
 use crate::text::{quoted, without_mark};
 use crate::xml::Element;
 
-/// Maximum number of placed faces beyond one per byte.
+/// Maximum number of placed faces or vertices beyond one per byte.
 const MAX_REPEATED: usize = 1 << 23;
 /// Maximum number of placed nodes.
 const MAX_PLACED: usize = 1 << 16;
@@ -114,7 +114,7 @@ struct Reader<'a> {
     ids: HashMap<&'a str, &'a Element>,
     shapes: HashMap<*const Element, Shape>,
     placed: usize,
-    /// Number of faces that may still be placed.
+    /// Number of faces or vertices that may still be placed.
     faces_left: usize,
 }
 

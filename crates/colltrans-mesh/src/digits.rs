@@ -166,8 +166,8 @@ impl NumberFormat {
         }
     }
 
-    /// Returns the format of coordinates that are stored as doubles: single precision if these are numbers of single
-    /// precision.
+    /// Returns the format of coordinates that are stored as doubles. It is single precision if nearly all of them are
+    /// numbers of single precision, and not by chance.
     pub(crate) fn of_doubles(mesh: &Mesh) -> Self {
         let different = different_numbers(mesh);
         let count = different.keys().filter(|bits| is_single(f64::from_bits(**bits))).count();

@@ -64,9 +64,9 @@ pub(crate) enum PlacePolicy {
 impl Mesh {
     /// Merges vertices with equal coordinates (bit for bit, except that `-0` equals `0`).
     ///
-    /// Vertices keep the order of their first occurrence. Then steps to a vertex and back are removed from
-    /// faces, and faces with fewer than three corners left are removed. Such a face has no area, and the edges
-    /// it connected become adjacent.
+    /// Vertices keep the order of their first occurrence. Then repeated consecutive corners, and steps to a vertex
+    /// and back, are removed from faces. Faces with fewer than three corners left are removed. Such a face has no
+    /// area, and the edges it connected become adjacent.
     #[must_use]
     pub fn weld(&self) -> Self {
         let (kept, faces) = self.first_of_equal();
@@ -189,7 +189,8 @@ impl Mesh {
         places
     }
 
-    /// Removes steps to a vertex and back from faces, and faces with fewer than three corners left.
+    /// Removes repeated consecutive corners and steps to a vertex and back from faces, and faces with fewer than
+    /// three corners left.
     ///
     /// Each removed step consists of opposite uses of one edge, so edges that were closed remain closed.
     pub(crate) fn remove_flat_faces(&mut self) {

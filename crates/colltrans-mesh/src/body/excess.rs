@@ -52,8 +52,10 @@ impl Excess {
         }
     }
 
-    /// Checks whether the part equals its hull up to the given depth below it. Then the part counts as convex,
-    /// and results for one hold for the other.
+    /// Checks whether the part equals its hull up to a depth of `tolerance`, a length. The volumes may differ by at
+    /// most the tolerance times the surface of a cube with edges of length `extent`. If this holds, the part counts
+    /// as convex, and results for the hull hold for the part up to the tolerance. Returns `false` if the part has no
+    /// volume, or if the search for the depth exceeded its limit.
     pub fn is_within(&self, tolerance: f64, extent: f64) -> bool {
         // A cube with edges of this extent has six faces.
         let most = 6.0 * tolerance * extent * extent;

@@ -27,8 +27,9 @@ pub use note::{Note, RemovedFaces, report_notes};
 use crate::words::count_text;
 use crate::{Error, Mesh, ReadOptions, read_with};
 
-/// Default maximum depth of a face below the hull, relative to the extent of the used vertices. It is a hundred
-/// times the effect of single precision, or of six printed digits.
+/// Default maximum depth of a face below the hull, relative to the extent of the used vertices. For coordinates
+/// that do not exceed the extent, it is about 80 times the spacing of numbers in single precision, and at least
+/// twice the rounding error of six printed digits.
 const CONVEX_TOLERANCE: f64 = 1e-5;
 /// Default tolerance between solids, as a multiple of the sum of their precisions. Both sides of a fit may be
 /// off by up to one precision, and an inclined facet increases the error.
@@ -272,15 +273,16 @@ pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, BodyEr
 /// The bodies of a mesh.
 #[derive(Debug, Clone)]
 pub struct SplitBodies {
-    /// The bodies, each with its own vertices, in the order of their first faces.
+    /// The bodies, each with its own vertices, in the order of their first faces. Coordinates are
+    /// [scaled](BodyOptions::scale).
     pub meshes: Vec<Mesh>,
     /// The repairs that preceded the split.
     pub notes: Vec<Note>,
 }
 
-/// Splits a mesh into its bodies: closed shells with their cavities, and open shells. `None` if there is only
-/// one. The mesh is [repaired](solid) first, and the notes apply to all bodies together. Faces without area are
-/// left out.
+/// Splits a mesh into its bodies: closed shells with their cavities, and open shells. Returns `None` if there is
+/// only one. The mesh is scaled and [repaired](solid) first. The notes apply to the whole file; notes on single
+/// shells are left out. So are faces without area.
 ///
 /// # Errors
 /// The errors of [`solid`] with open shells allowed.

@@ -53,7 +53,7 @@ pub(super) fn header_error(bytes: &[u8]) -> Option<Fault> {
     Some(Fault::new(Place::Line(last + 1), what))
 }
 
-/// Checks a line `format_error`. Returns a message if it is invalid.
+/// Checks a line `format`. Returns a message if it is invalid.
 fn format_error(words: &[&str]) -> Option<String> {
     let known = ["ascii", "binary_little_endian", "binary_big_endian"];
     match words {
@@ -65,7 +65,7 @@ fn format_error(words: &[&str]) -> Option<String> {
     }
 }
 
-/// Checks a line `element_error`. Returns a message if it is invalid.
+/// Checks a line `element`. Returns a message if it is invalid.
 fn element_error(words: &[&str]) -> Option<String> {
     match words {
         [_, _, count] if count.parse::<usize>().is_ok() => None,
@@ -76,7 +76,7 @@ fn element_error(words: &[&str]) -> Option<String> {
     }
 }
 
-/// Checks a line `property_error`. Returns a message if it is invalid.
+/// Checks a line `property`. Returns a message if it is invalid.
 fn property_error(words: &[&str]) -> Option<String> {
     let types = match words {
         [_, "list", count, value, _] => &[*count, *value][..],

@@ -1,8 +1,8 @@
 //! The remainder of a cell outside some cones: convex pieces with exact corners.
 //!
 //! A corner is a corner of the cell or the intersection of two lines. In general its side of a third line is
-//! the sign of a determinant of the linear forms of the three lines. Cones are open, therefore pieces are closed. Between two cones an arc or a
-//! point may remain: a piece with two corners or with one.
+//! the sign of a determinant of the linear forms of the three lines. Cones are open, therefore pieces are
+//! closed. Between two cones an arc or a point may remain: a piece with two corners or with one.
 
 use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};

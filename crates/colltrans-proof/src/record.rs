@@ -1,5 +1,5 @@
-//! Answers as the command line, batches, Python and the page write them: one flat JSON object, described by
-//! `docs/answers.schema.json`.
+//! Answers as the command line, batches, Python and the page write them: one JSON object for each answer,
+//! described by `docs/answers.schema.json`.
 //!
 //! Each query has a record, a struct with the values that users and programs need: numbers with their proven
 //! bounds, points and normals in the world frame, and features by the indices of the input. A record contains
@@ -101,8 +101,9 @@ always_present!(Ending, ObstacleId, f64, u32, usize, &str);
 
 /// Answer to any query about two bodies, for example a line of a batch.
 ///
-/// Fields that do not apply are omitted. Infinite numbers are `null`. Translations, the `distance` of a
-/// clearance and their bounds are multiples of the direction. Other lengths have the unit of the bodies.
+/// Fields that do not apply are omitted. Infinite numbers are `null`. These values along a direction, and their
+/// bounds, are multiples of the direction: `translation`, `exit`, `distance`, `offset_distance`, `back` and `on`.
+/// Lengths have the unit of the bodies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Record {
@@ -165,8 +166,8 @@ pub enum Ending {
     Grazing,
     /// The bodies never meet.
     Separated,
-    /// Nothing blocks a solid. For a motion or a path: no bodies meet. For free directions: some directions
-    /// are free.
+    /// Nothing blocks a solid, or nothing blocks a body in a scene. For a motion or a path: no bodies meet. For
+    /// free directions: some directions are free.
     Free,
     /// A body is blocked after a finite distance. For free directions: it is proven that no direction is
     /// free.

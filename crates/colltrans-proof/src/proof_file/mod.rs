@@ -303,7 +303,8 @@ impl ProofFile {
     /// through others when the solids are offset inwards by half the tolerance each
     /// ([`ShrinkReport::inverted`](colltrans_solid::ShrinkReport::inverted)). At these facets the statement
     /// about the offset solids does not describe the original ones. A body that several pairs or places share
-    /// counts once on each side.
+    /// counts once on each side. The result is 0 if the statement has no tolerance, and for a scene query with
+    /// the default tolerance, which the file does not contain.
     pub fn inverted_facets(&self) -> [usize; 2] {
         // The largest tolerance of each body on each side.
         let mut offset: [HashMap<usize, f64>; 2] = Default::default();
@@ -341,8 +342,8 @@ impl ProofFile {
         offset.map(|side| side.iter().filter_map(inverted).sum())
     }
 
-    /// Returns the minimum gap of a query along a direction, in world units; 0 if the bodies may touch, and
-    /// for all other queries.
+    /// Returns the minimum gap of a query of two bodies along a direction, in world units. It is 0 if the query
+    /// has no minimum gap, and for all other kinds of queries.
     pub const fn min_gap(&self) -> f64 {
         if let Query::Cast(along) = &self.query { along.min_gap } else { 0.0 }
     }

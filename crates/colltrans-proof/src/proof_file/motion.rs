@@ -146,8 +146,9 @@ impl ProofFile {
     /// Joins several proofs about motions to one proof of the first contact of all pairs.
     ///
     /// # Errors
-    /// Returns an error if there is no proof, if one is not about motions, or if the pairs have different
-    /// minimum gaps or a tolerance.
+    /// Returns an error if there is no proof, or if one is not about motions. Returns an error if a pair of convex
+    /// bodies has a minimum gap above the smallest one, or if one of several pairs is a pair of solids with a
+    /// tolerance.
     ///
     /// # Panics
     /// Never panics, because all numbers can be written.

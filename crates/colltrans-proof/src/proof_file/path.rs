@@ -18,8 +18,8 @@ use colltrans_solid::kinds::{AnyBody, ByKind};
 /// Maximum number of pairs that a text names.
 const MAX_NAMED: usize = 12;
 
-/// Statement about a path: none of these pairs of bodies meets before a time, and one of them meets by
-/// another time.
+/// Statement about a path: none of these pairs of bodies meets before a time. If a contact is claimed, one of
+/// them meets by another time.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]

@@ -1,6 +1,7 @@
 //! Proofs of scene queries.
 //!
-//! The index of an obstacle is its place in the file. A body at several places is stored once.
+//! In the list of poses the moving body comes first. Obstacle `k`, counted from 0, has pose `k + 1`. An obstacle
+//! that was inserted in several poses as one shared body is stored once.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -70,7 +71,7 @@ where
 /// Proofs of scene queries, which are computed for the bodies that are rebuilt from the file.
 ///
 /// Obstacles have indices from 0 in the order of insertion. Ignored obstacles are not stored. Of the options,
-/// the minimum gap, both tolerances and the start overlap are used.
+/// the minimum gap, the graze tolerance, the tolerance of solids and the start overlap are used.
 ///
 /// ```
 /// use colltrans::glam::DVec3;

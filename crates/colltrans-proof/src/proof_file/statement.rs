@@ -407,10 +407,11 @@ fn proven_translation(
     of_pair.contact_of_triangles(triangles).map(|found| found.translation)
 }
 
-/// Returns the translation of a contact. The bounds also enclose those that a check of its two triangles
-/// proves.
+/// Returns the translation of a contact for the statement. Its bounds enclose the bounds of the answer, and those
+/// that a check of the two triangles proves.
 ///
-/// The bounds of the answer may be tighter, because they may come from the hulls of the bodies.
+/// The bounds of the answer may be tighter than those of the check, because they may come from the hulls of the
+/// bodies.
 fn claimed_translation(
     cast: &Cast<'_, Solid>,
     certificate: &SolidCertificate,

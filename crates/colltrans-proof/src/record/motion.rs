@@ -9,7 +9,8 @@ use colltrans_motion::{MotionCast, MotionClearance, MotionContact, MotionOutcome
 use colltrans_solid::body::Solid;
 
 record! {
-    /// Bounds of a time, from 0 at the start of a motion to 1 at its end.
+    /// Bounds of a time. For a motion, times are from 0 at the start to 1 at the end. For a path, they are the
+    /// times of the path.
     #[derive(Copy)]
     pub struct TimeRecord {
         /// The bodies do not meet before this time.

@@ -41,11 +41,11 @@ record! {
 }
 
 record! {
-    /// Obstacles that are closer to a body than a length.
+    /// Obstacles whose distance from a body is at most a length.
     #[non_exhaustive]
     pub struct SceneWithinRecord {
-        /// `closer` if an obstacle is closer, otherwise `undecided` if rounding prevents a decision about
-        /// one, otherwise `farther`.
+        /// `closer` if the distance of an obstacle is at most the length, otherwise `undecided` if rounding
+        /// prevents a decision about one, otherwise `farther`.
         pub outcome: Ending,
         /// Number of obstacles in the query.
         pub obstacles: usize,
@@ -252,7 +252,7 @@ impl From<SolidClearanceRecord> for SceneClearanceRecord {
 }
 
 /// Returns two near points in the world frame. Returns `None` if the obstacle has been removed since the
-/// query.
+/// query, or if the points cannot be computed.
 fn points_of(
     obstacle: ObstacleId,
     near: &AnyNear,

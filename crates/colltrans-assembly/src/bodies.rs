@@ -62,7 +62,8 @@ impl Fit {
     ///
     /// That tolerance is the largest of:
     /// - for each file, `2^-21` of its largest coordinate in single precision, otherwise four times
-    ///   [`Mesh::precision`](colltrans_mesh::Mesh::precision), as in [`between`](colltrans_mesh::body::cast_between);
+    ///   [`Mesh::precision`](colltrans_mesh::Mesh::precision), as in
+    ///   [`cast_between`](colltrans_mesh::body::cast_between);
     /// - `2^-21` of the assembly's extent, if a part is in single precision, has no file, or is rotated by a pose;
     /// - `2^-46` of the largest coordinate in the world, for the rounding of doubles.
     pub fn default_for(assembly: &Assembly) -> Self {
@@ -119,7 +120,7 @@ impl Fit {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
     /// Translation at which the facets in contact meet without shrinking, with bounds:
-    /// [`SolidContact::translation`]. Equal to `displaced` with a minimum gap.
+    /// [`SolidContact::translation`]. Equal to `shrunk_translation` with a minimum gap.
     pub translation: Bounded,
     /// Translation until the shrunk bodies touch, or until the minimum gap is reached; never negative.
     pub shrunk_translation: Bounded,
@@ -446,7 +447,7 @@ impl<'a> Bodies<'a> {
         found
     }
 
-    /// Returns the set of parts marked in `there`, for [`first_ahead`](Self::first_part_ahead).
+    /// Returns the set of parts marked in `there`, for [`first_part_ahead`](Self::first_part_ahead).
     pub(crate) fn remaining_parts(&self, there: &[bool]) -> RemainingBoxes {
         self.tree.remaining_boxes(there)
     }
@@ -456,7 +457,8 @@ impl<'a> Bodies<'a> {
         self.tree.remove(living, part);
     }
 
-    /// Computes the bounds of the tree nodes for boxes given by part, for [`visit_high`](Self::visit_highest_first).
+    /// Computes the bounds of the tree nodes for boxes given by part, for
+    /// [`visit_highest_first`](Self::visit_highest_first).
     pub(crate) fn node_bounds(&self, boxes: &[Aabb]) -> Vec<Aabb> {
         self.tree.bounds_of(boxes)
     }
@@ -820,9 +822,9 @@ impl<'a> Bodies<'a> {
         self.overlaps_displaced(a, DVec3::ZERO, b)
     }
 
-    /// Checks whether two parts overlap as given in the files: `None` if they do not. Otherwise returns the
-    /// least tolerance with which they do not overlap, or `Some(None)` if no tolerance up to their size
-    /// suffices.
+    /// Returns the least tolerance that removes the overlap of two parts, as given in the files. The outer value is
+    /// `None` if the parts do not overlap. The inner one is `None` if no tolerance up to their size removes the
+    /// overlap.
     pub fn least_tolerance(&self, a: usize, b: usize) -> Option<Option<f64>> {
         least_tolerance_of_parts(self.assembly, [a, b])
     }
@@ -920,8 +922,8 @@ pub(crate) struct DirectionExtents {
 
 impl DirectionExtents {
     /// Checks whether a part within `bounds` could raise the distance `found` that this part must move
-    /// ([`past`](Self::travel_beyond)). `reach` is the largest coordinate of any part, so that the rounding errors are
-    /// overestimated.
+    /// ([`travel_beyond`](Self::travel_beyond)). `reach` is the largest coordinate of any part, so that the rounding
+    /// errors are overestimated.
     pub(crate) fn may_be_behind(&self, bounds: &Aabb, reach: f64, found: &Bounded) -> bool {
         let noise = 64.0 * f64::EPSILON * reach;
         let apart = |k: usize| {

@@ -8,8 +8,8 @@
 //! - axes of cylinders ([`cylinders`]),
 //! - principal axes of inertia ([`inertia`]).
 //!
-//! A direction within an angle of an earlier one is omitted. The most significant candidates (largest contact,
-//! longest cylinder) come first, so that slivers do not replace them.
+//! A direction within [`CandidateOptions::min_angle`] of an earlier one is omitted. The most significant candidates
+//! (largest contact, longest cylinder) come first, so that slivers do not replace them.
 
 use colltrans::glam::DVec3;
 

@@ -96,8 +96,8 @@ impl AnalysisRequest {
     /// Analyses the assembly: overlaps, contacts, directions, contacts along these, and a plan.
     ///
     /// # Errors
-    /// Returns the errors of [`Start::new`], [`find_liaisons`], [`find_candidates`], [`ContactMatrix::new`], [`disassemble`] and
-    /// [`remove`].
+    /// Returns the errors of [`Start::new`], [`find_liaisons`], [`find_candidates`], [`ContactMatrix::new`],
+    /// [`disassemble`] and [`remove`].
     pub fn analyse<'a>(
         &self,
         bodies: &'a Bodies<'a>,
@@ -118,7 +118,7 @@ impl AnalysisRequest {
     /// Analyses the assembly without a plan, which is left empty.
     ///
     /// # Errors
-    /// Returns the errors of [`ask`](Self::analyse).
+    /// Returns the errors of [`analyse`](Self::analyse).
     pub fn analyse_without_plan<'a>(
         &self,
         bodies: &'a Bodies<'a>,

@@ -68,7 +68,7 @@ impl PairContact {
 /// The contacts of all parts along a list of directions.
 ///
 /// In a row of parts every pair meets, so the complete matrix has an entry for every pair. It is computed at first
-/// use ([`complete`](Self::compute_all)). The queries of a plan about single parts do not need it.
+/// use ([`compute_all`](Self::compute_all)). The queries of a plan about single parts do not need it.
 #[derive(Clone)]
 pub struct ContactMatrix<'a> {
     bodies: &'a Bodies<'a>,

@@ -170,7 +170,7 @@ impl Part {
 }
 
 /// Factor of [`Mesh::precision`] for the tolerance between two files of text or doubles, as in
-/// [`between`](body::cast_between).
+/// [`cast_between`](body::cast_between).
 const PRECISIONS: f64 = 4.0;
 /// Factor of [`Mesh::precision`] for the tolerance between two files in single precision.
 const SINGLE_PRECISIONS: f64 = 2.0;
@@ -278,7 +278,7 @@ impl Assembly {
 
     /// Returns the assembly with a role, a tolerance or both for each pair of a part of the first group and
     /// one of the second. A later entry for a pair replaces an earlier one. Names are patterns of
-    /// [`group`](Self::parts_named).
+    /// [`parts_named`](Self::parts_named).
     ///
     /// # Errors
     /// - [`AssemblyError::UnknownPart`]
@@ -286,8 +286,8 @@ impl Assembly {
     /// - [`AssemblyError::InvalidValue`] if the tolerance is negative, not finite or too large
     /// - [`AssemblyError::NoFit`] without role and tolerance
     /// - [`AssemblyError::NoTolerance`] for a snap fit without tolerance
-    /// - [`AssemblyError::CyclicOrder`] or [`AssemblyError::OverlappingSubassemblies`] if glued parts conflict with other
-    ///   constraints
+    /// - [`AssemblyError::CyclicOrder`] or [`AssemblyError::OverlappingSubassemblies`] if glued parts conflict with
+    ///   other constraints
     pub fn with_pair<S: AsRef<str>>(
         mut self,
         [first, second]: [&[S]; 2],
@@ -325,7 +325,7 @@ impl Assembly {
     }
 
     /// Returns the assembly with fixed parts, which a plan never moves. Names are patterns of
-    /// [`group`](Self::parts_named).
+    /// [`parts_named`](Self::parts_named).
     ///
     /// # Errors
     /// [`AssemblyError::UnknownPart`].
@@ -337,7 +337,7 @@ impl Assembly {
     }
 
     /// Returns the assembly with an order constraint: none of the second parts leaves while one of the first
-    /// parts is still in place. Names are patterns of [`group`](Self::parts_named).
+    /// parts is still in place. Names are patterns of [`parts_named`](Self::parts_named).
     ///
     /// # Errors
     /// [`AssemblyError::UnknownPart`], and [`AssemblyError::CyclicOrder`] if the constraints become cyclic.
@@ -353,17 +353,18 @@ impl Assembly {
     }
 
     /// Returns the assembly with parts that leave as one and are not separated afterwards. Names are patterns
-    /// of [`group`](Self::parts_named).
+    /// of [`parts_named`](Self::parts_named).
     ///
     /// # Errors
     /// [`AssemblyError::UnknownPart`], [`AssemblyError::TooFew`] for fewer than two parts,
-    /// [`AssemblyError::OverlappingSubassemblies`], and [`AssemblyError::CyclicOrder`] if the constraints become cyclic.
+    /// [`AssemblyError::OverlappingSubassemblies`], and [`AssemblyError::CyclicOrder`] if the constraints become
+    /// cyclic.
     pub fn with_together<S: AsRef<str>>(self, names: &[S]) -> Result<Self, AssemblyError> {
         self.with_unit_of(None, names, false)
     }
 
     /// Returns the assembly with a subassembly: its parts leave as one, and are then taken apart separately.
-    /// Names are patterns of [`group`](Self::parts_named).
+    /// Names are patterns of [`parts_named`](Self::parts_named).
     ///
     /// # Errors
     /// Those of [`Self::with_together`], and [`AssemblyError::EmptyName`] for an empty name.

@@ -1,10 +1,10 @@
 //! Disassembly plans: the removal steps, the parts that remain, and why they remain.
 //!
-//! All parts keep their initial poses until they are removed. Which parts block a part along a direction therefore
-//! does not depend on earlier removals: the blocking graph of every state is a subgraph of one [`ContactMatrix`]. Each step
+//! All parts keep their initial poses until they are removed. Which parts block a part along a direction therefore does
+//! not depend on earlier removals: the blocking graph of every state is a subgraph of one [`ContactMatrix`]. Each step
 //! removes one of the smallest removable groups over all directions (module `order` chooses among them). The *base*
-//! never moves: the fixed parts, or else the largest part. If a removable group contains the base, the other parts
-//! move in the opposite direction. A removed group is then taken apart by itself.
+//! never moves: the fixed parts, or else the largest part. If a removable group contains the base, the other parts move
+//! in the opposite direction. A removed group is then taken apart by itself.
 //!
 //! If no direction of the matrix removes a group, these are tried in turn: finer candidates, samples of the sphere,
 //! samples refined for movable parts, a proof over the sphere, paths of several moves, and a turn followed by a move.
@@ -70,9 +70,9 @@ pub use tolerated::ToleratedContact;
 
 /// Interlocked parts: no translation of a group as one body separates it from the other parts.
 ///
-/// The statement holds for all directions if [`proven`](Self::proof_cells) is set, otherwise for the tested directions.
-/// Field [`moves`](Self::path_search) reports whether paths of several moves were searched. Parts that move at the same
-/// time, each in its own direction, may still come apart.
+/// The statement holds for all directions if [`proof_cells`](Self::proof_cells) is set, otherwise for the tested
+/// directions. Field [`path_search`](Self::path_search) reports whether paths of several moves were searched. Parts
+/// that move at the same time, each in its own direction, may still come apart.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Interlocked {
@@ -101,14 +101,15 @@ pub struct Interlocked {
 pub struct Plan {
     /// The steps in order. Steps that take a group apart follow the step that removed the group.
     pub steps: Vec<Step>,
-    /// Parts from which all others were removed and which stay in place: the base, or parts that stay together. Empty
-    /// if parts are [left](Self::remaining).
+    /// Parts from which all others were removed and which stay in place: the base, parts that stay together, or an
+    /// interlocked group without fixed parts. Empty if parts [remain](Self::remaining).
     pub base: Vec<usize>,
     /// Parts that remain because they are fixed or because no tested direction moves them.
     pub remaining: Vec<usize>,
     /// Interlocked groups, with the reasons.
     pub interlocked: Vec<Interlocked>,
-    /// For each part, the index of the first part with the same shape (see [`likes`](crate::identical::first_identical_parts)).
+    /// For each part, the index of the first part with the same shape, see
+    /// [`first_identical_parts`](crate::identical::first_identical_parts).
     pub first_identical: Vec<usize>,
     /// For a plan that removes selected parts: which other parts are removed with them. `None` for a plan of all
     /// parts.
@@ -117,9 +118,9 @@ pub struct Plan {
 
 /// Computes a plan that takes all parts apart.
 ///
-/// Uses the directions of a matrix of all parts, and finer directions for parts that those do not move. For
-/// interlocked groups, tries to prove that no translation direction separates them ([`Interlocked::proof_cells`]). The proof is
-/// not attempted in these cases:
+/// Uses the directions of a matrix of all parts, and finer directions for parts that those do not move. For interlocked
+/// groups, tries to prove that no translation direction separates them ([`Interlocked::proof_cells`]). The proof is not
+/// attempted in these cases:
 /// - [`PlanOptions::prove`] is false, a minimum gap is set, or overlaps at the start are ignored;
 /// - the group has more than 40 parts, open surfaces, ignored pairs, snap fits, or pairs whose crossings at the start
 ///   are tolerated.

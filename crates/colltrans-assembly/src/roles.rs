@@ -2,7 +2,7 @@
 //!
 //! A pair with a tolerance of its own or a thread has bodies of its own, which are used only for this pair. A role
 //! affects no other pair. Later contacts of the pair still count, except between glued parts. A pair tolerates one of
-//! these:
+//! these, or else facets that cross at the start ([`PairTolerance::Crossing`]):
 //!
 //! - a *tolerance* `L`: both parts are shrunk by `L / 2`, like all parts with the general tolerance. *Press* and
 //!   *soft* are reasons for one. Without a length the tolerance is slightly more than the depth of the overlap;
@@ -69,8 +69,8 @@ pub enum PairTolerance {
     Core(f64),
     /// Contacts that begin within this travel are tolerated.
     Snap(f64),
-    /// Crossings at the start are tolerated, because no tolerance both ends the overlap and leaves the parts whole, or
-    /// no thread was found.
+    /// Facets that cross at the start are tolerated. This applies if every tolerance that removes the overlap would
+    /// destroy a part, or if the role is a thread and no thread was found.
     Crossing,
     /// The parts leave as one.
     Glued,

@@ -288,8 +288,9 @@ fn round_contacts(parts: [&Solid; 2]) -> impl Iterator<Item = RoundContact> {
     })
 }
 
-/// Checks whether a solid is rotationally symmetric about an axis, apart from its facets: in each row, the
-/// outer radius varies by at most `share` of the solid's radius.
+/// Checks whether a solid is rotationally symmetric about an axis, apart from its tessellation. The range along the
+/// axis is divided into rows. In each row that has samples, the outer radius varies by at most `share` of the solid's
+/// radius.
 pub(crate) fn is_rotationally_symmetric(
     solid: &Solid,
     [point, axis]: [DVec3; 2],

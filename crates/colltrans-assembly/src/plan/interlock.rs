@@ -1,7 +1,7 @@
 //! Explanations of interlocked groups: what blocks their parts, and the sentences about it.
 //!
-//! All sentences about a group are made from one table ([`Claim`]), so that no text claims more than another. A proof
-//! covers translations of a *group as one body*. It covers neither turns nor parts that move at the same time in
+//! All sentences about what is proven are made from one record ([`Claim`]), so that no text claims more than another. A
+//! proof covers translations of a *group as one body*. It covers neither turns nor parts that move at the same time in
 //! different directions.
 
 use glam::DVec3;
@@ -81,7 +81,7 @@ fn keep_smallest_sets(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: D
     }
 }
 
-/// The established facts about an interlocked group, as text. Every sentence about such a group is made from these.
+/// The established facts about an interlocked group, as text. Every sentence about what is proven is made from these.
 struct Claim {
     /// Heading of the group in a list.
     heading: &'static str,

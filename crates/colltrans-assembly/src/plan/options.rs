@@ -15,8 +15,9 @@ pub struct PlanOptions {
     pub max_moves: usize,
     /// Whether to try to prove that no translation separates an interlocked group.
     pub prove: bool,
-    /// Work limit of each search for removal paths. For each of the `legs`, a fortieth of this number of node pairs
-    /// may be visited, as of [`RemovalOptions`](colltrans::removal::path::RemovalOptions), and 500 casts may be made.
+    /// Work limit of each search for removal paths. For each of the `max_moves`, a fortieth of this number of node
+    /// pairs may be visited ([`RemovalOptions::looks`](colltrans::removal::path::RemovalOptions::looks)), and 500 casts
+    /// may be made.
     pub max_work: u64,
     /// Direction opposite to gravity, of any nonzero length. `None` selects that of the
     /// [assembly](crate::Assembly::up).
@@ -49,7 +50,7 @@ impl PlanOptions {
         Self { samples, ..self }
     }
 
-    /// Returns the options with another maximum number of [`legs`](Self::max_moves).
+    /// Returns the options with another [maximum number of moves](Self::max_moves).
     #[must_use]
     pub fn with_max_moves(self, legs: usize) -> Self {
         Self { max_moves: legs, ..self }

@@ -2,12 +2,12 @@
 //!
 //! - `up` is opposite to gravity. A part *rests on* the parts that block it at once along `-up`.
 //! - A part *falls* if nothing that remains carries it. The lowest parts, the *base* and fixed parts never fall.
-//! - The *travel* of a group along `d` is the distance after which it is beyond all remaining parts whose boxes
-//!   overlap its shadow ([`Bodies::travel_beyond`]).
+//! - The *travel* of a group along `d` is the distance after which it is beyond all remaining parts whose projected
+//!   boxes overlap its own ([`Bodies::travel_beyond`]).
 //!
-//! A direction is considered if its travel is at most [`TRAVEL_SLACK`] times the shortest one. The choice of least
-//! [cost](Order::step_cost) wins; ties go to the first part. Before a choice is accepted, samples of the sphere are
-//! searched for a much shorter direction. `docs/theory/disassembly.md` lists the costs.
+//! A direction is considered if its travel is at most [`TRAVEL_SLACK`] times the shortest one, up to the noise. The
+//! choice of least [cost](Order::step_cost) wins; ties go to the first part. Before a choice is accepted, samples of
+//! the sphere are searched for a much shorter direction. `docs/theory/disassembly.md` lists the costs.
 
 use std::collections::BTreeMap;
 

@@ -106,11 +106,12 @@ impl Ranking {
 
     /// Returns the best part and the index of its direction. Returns `None` if no part is ranked.
     ///
-    /// The result equals that of a scan over all parts in order in which a removal must be [better](is_better) than
-    /// the best before it. Only the removals whose costs follow the least one in small steps are examined, because
-    /// the scan ends with one of them (`docs/theory/disassembly.md`). Of several removals with one own cost the first
-    /// counts. `last` is the shape of the step before. `cost` must increase with the own cost, and must be larger by
-    /// far more than [`EQUAL`] for another shape.
+    /// The reference is a scan over all parts in order, in which a removal replaces the best one if it is
+    /// [better](is_better). This search has the same result. It examines only the removals whose costs follow the
+    /// least one in small steps, because the scan ends with one of them (`docs/theory/disassembly.md`). Of several
+    /// removals of a class with equal own cost, only the first is examined. `last` is the shape of the step before.
+    /// `cost` must increase with the own cost. For another shape than `last` it must be larger by far more than
+    /// [`EQUAL`].
     pub(super) fn best_removal(
         &self,
         last: Option<usize>,

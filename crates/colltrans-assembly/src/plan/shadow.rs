@@ -100,8 +100,8 @@ impl Shadow {
         behind
     }
 
-    /// Returns the distance that a part travels along the third axis until it is beyond all present parts outside of
-    /// its group, and the part behind which it ends.
+    /// Returns the distance that a part travels along the direction, the third axis of the boxes, until it is beyond
+    /// all present parts outside of its group. Also returns the part that requires this distance.
     fn travel_past(
         &self,
         bodies: &Bodies,

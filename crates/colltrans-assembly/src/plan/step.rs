@@ -34,7 +34,7 @@ pub struct Turn {
     pub point: DVec3,
     /// Number of turns. Positive turns are counter-clockwise if seen against the direction.
     pub turns: f64,
-    /// Initial rotation in turns, of the same sign convention. With it and `aside` the threads overlap least, or have
+    /// Initial rotation in turns, of the same sign convention. With it and `offset` the threads overlap least, or have
     /// play.
     pub initial_turns: f64,
     /// Initial displacement of the parts; 0 if the file has them in this position.

@@ -20,8 +20,8 @@ use colltrans::solid::StartOverlap;
 const MAX_STEP_ANGLE: f64 = 0.02;
 /// Angle below which the direction of the step replaces the axis, in radians.
 const SAME_AXIS: f64 = 1e-3;
-/// Two threads turn together if their axes differ by less than this fraction of the crest radius and their pitches by
-/// less than this fraction.
+/// Two threads turn together if their axes are nearly parallel ([`MAX_STEP_ANGLE`]) and less than this fraction of the
+/// crest radius apart, and their pitches differ by less than this fraction.
 const SAME_HELIX: f64 = 0.02;
 /// Maximum tolerance that is tried, as a fraction of the thread's depth. A tolerance given for the pair is never
 /// exceeded.
@@ -33,8 +33,8 @@ const TOLERANCE_FACTOR: f64 = 1.05;
 
 /// Returns the two legs of a step that unscrews some parts from others, and the travel of the second leg.
 ///
-/// The first leg turns, the second is straight. Only the others are present. `travel` is the total distance. Returns
-/// `None` if no thread connects the parts, or if no helix was found.
+/// The first leg turns, the second is straight. `others` are the parts that remain, and `present` is their mask.
+/// `travel` is the total distance. Returns `None` if no thread connects the parts, or if no helix was found.
 pub(super) fn unscrewing_legs(
     bodies: &Bodies,
     (parts, direction): (&[usize], DVec3),
@@ -64,8 +64,8 @@ pub(super) fn unscrewing_legs(
     Some((legs, rest))
 }
 
-/// Returns the threads between moving parts and present ones whose axes are along the direction. The first part of
-/// each pair moves.
+/// Returns the threads with a helix between moving parts and present ones whose axes are along the direction, in
+/// either sense. The first part of each pair moves.
 fn threads_along(
     bodies: &Bodies,
     parts: &[usize],

@@ -58,8 +58,8 @@ impl<'a> Words<'a> {
         self.with_unit(self.sides_text(size))
     }
 
-    /// Formats the sides of a box without the unit. The thickness of a sheet, which is only rounding, becomes
-    /// 0.
+    /// Formats the sides of a box without the unit. A side below [`MIN_SIDE`] of the largest one, such as the rounded
+    /// thickness of a flat surface, becomes 0.
     pub(super) fn sides_text(&self, size: DVec3) -> String {
         let least = MIN_SIDE * size.max_element();
         let side = |x: f64| if x < least { 0.0 } else { x * self.factor };

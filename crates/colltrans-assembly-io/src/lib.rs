@@ -1,6 +1,6 @@
 //! Reads assemblies and robots from files.
 //!
-//! - [`read()`] reads a folder of meshes, a manifest, URDF, glTF or 3MF. It returns an
+//! - [`read()`] reads a folder of meshes, a single mesh, a manifest, URDF, glTF or 3MF. It returns an
 //!   [`Assembly`](colltrans_assembly::Assembly), which has parts in one world frame and one unit.
 //! - [`read::read_robot`] reads URDF. It returns a [`Robot`], which has links, joints, and queries about paths
 //!   ([`robot`]).

@@ -22,9 +22,9 @@ pub(super) const MOST_NAMED: usize = 4;
 /// The rule by which placed meshes are split into parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Split {
-    /// Splits only a source with a single mesh: into the named objects of its file, or into its bodies if the
-    /// file names none. Other sources are read as with [`ForbiddenDirection`](Self::Never), except that each 3MF object with
-    /// a mesh is a part.
+    /// Splits only a source with a single mesh that the source does not declare to be one part. It is split into the
+    /// named objects of its file, or into its bodies if the file names none. Other sources are read as with
+    /// [`Never`](Self::Never), except that each 3MF object with a mesh is a part.
     #[default]
     Auto,
     /// Each mesh file, glTF node, URDF link or item of a 3MF build is one part.

@@ -1,9 +1,11 @@
 //! Reads glTF and GLB: each node with a mesh is a part, in metres, with the transforms of the node and its
 //! ancestors.
 //!
-//! Vertices that differ only in normal or texture coordinates are welded, because glTF stores them separately.
-//! Textures and animations are ignored. A part has one colour, that of the material of its largest primitive.
-//! Offsets, strides and counts are checked against the available bytes before use.
+//! Hidden nodes are left out. Files that `colltrans.step` has converted can mark a node whose meshes form one part, and
+//! can name the unit of the original file, in which the parts are then returned. Vertices that differ only in normal or
+//! texture coordinates are welded, because glTF stores them separately. Textures and animations are ignored. A part has
+//! one colour, that of the material of its largest primitive. Offsets, strides and counts are checked against the
+//! available bytes before use.
 
 use std::collections::HashMap;
 use std::path::Path;

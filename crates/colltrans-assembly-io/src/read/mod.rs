@@ -1,8 +1,9 @@
-//! Reads assemblies from a folder of meshes, a manifest, URDF, glTF or 3MF.
+//! Reads assemblies from a folder of meshes, a single mesh, a manifest, URDF, glTF or 3MF.
 //!
 //! Each reader returns parts in one world frame and one unit. The unit is that of the file: metres for URDF and
-//! glTF, the named unit for 3MF and manifests. The coordinates of a folder of meshes without a unit are used
-//! unchanged.
+//! glTF, the named unit for 3MF and manifests. A glTF file that was converted from STEP may name the unit of the
+//! STEP file, which is then used. Meshes have the unit of the first file that has one; if none has, their
+//! coordinates are used unchanged.
 
 mod drafts;
 mod files;
@@ -182,7 +183,7 @@ fn is_known(path: &Path) -> bool {
 }
 
 /// Reads an assembly like [`read`], from a provider of files. The extension of `path`, the source, selects the
-/// reader.
+/// reader. The source cannot be a folder.
 ///
 /// # Errors
 /// The errors of [`read`].
@@ -296,8 +297,8 @@ fn parse_mesh(path: &Path, bytes: Vec<u8>) -> Result<Mesh, ReadError> {
 
 /// Maximum number of nodes, components, links or parts of a source, each counted as often as it is placed.
 pub const MAX_PLACED: usize = 1 << 16;
-/// Maximum number of placed facets beyond one per byte of the files. It bounds sources that place the same
-/// shape very often.
+/// Maximum number of placed facets beyond one per byte of the files. If a mesh has more vertices than facets, its
+/// vertices are counted instead. The limit bounds sources that place the same shape very often.
 pub const MAX_REPEATED: usize = 1 << 23;
 
 /// Counts what a source places before it is built, because a few lines can place a shape arbitrarily often.

@@ -20,8 +20,8 @@ use colltrans_assembly::Piece;
 /// The number of sides of a polyhedron that replaces a round shape.
 pub(super) const SIDES: usize = 64;
 
-/// A factor above 1 that exceeds the rounding errors and the error of a hull at a vertex, relative to the
-/// radius.
+/// A factor for the size of circumscribed polyhedra. Its excess over 1 is larger than the rounding errors of the
+/// vertices and the error of a convex hull that is built from them, relative to the radius.
 const ROUNDING_MARGIN: f64 = 1.0 + 1e-12;
 
 /// The position of the polyhedron relative to the round shape that it replaces.

@@ -1,6 +1,6 @@
-//! Reads the files that slicers add to a 3MF package: names of objects, and bodies that instruct the
-//! slicer and are not parts of the model. These files do not affect shapes; a file that cannot be parsed is
-//! ignored.
+//! Reads the files that slicers add to a 3MF package. They name objects, divide meshes into bodies, and mark the
+//! bodies that only instruct the slicer, for example modifiers, which are not parts of the model. A file that cannot
+//! be parsed is ignored.
 //!
 //! - `Metadata/model_settings.config` has a `part` for each component of an object. Its id is that of the
 //!   object that the component places.

@@ -32,8 +32,8 @@ use crate::error::ReadError;
 use colltrans_assembly::Assembly;
 use colltrans_mesh::xml::{self, Element, Lines};
 
-/// Maximum number of unpacked bytes of all models of a package, and maximum ratio of unpacked bytes to the
-/// bytes of the package.
+/// Maximum number of unpacked bytes of all files that are read from a package, and maximum ratio of these bytes to
+/// the bytes of the package.
 const MAX_BYTES: u64 = 1 << 30;
 const MAX_RATIO: u64 = 256;
 /// Number of unpacked bytes below which the ratio is not checked.

@@ -22,8 +22,8 @@ pub struct Cell {
     notes: Vec<String>,
 }
 
-/// The links, followed by the scene bodies, each with the bodies that belong to it. In this module a *thing* is
-/// a link or a scene body.
+/// The names of the links, followed by those of the scene bodies. Also maps each body to the link or the scene body to
+/// which it belongs, called a *thing* in this module. A link has several bodies or none.
 struct NamedBodies {
     names: Vec<String>,
     links: usize,

@@ -42,8 +42,8 @@ pub struct Link {
     pub bodies: Vec<AnyBody>,
     /// Whether the meshes of the link are replaced by their convex hulls.
     pub is_hull: bool,
-    /// The largest dent of its meshes that are convex only to within the tolerance, a length
-    /// ([`Loaded::dent`]).
+    /// The largest depth of the surface of a mesh below its hull, a length, over the meshes that are convex only to
+    /// within the tolerance ([`Loaded::dent`]).
     pub dent: Option<f64>,
 }
 
@@ -152,7 +152,8 @@ pub enum RobotError {
     Path(#[from] colltrans::motion::path::PathError),
 }
 
-/// Builds a body from a mesh: a convex polyhedron if the mesh is convex, otherwise a solid, which may be open.
+/// Builds a body from a mesh: a convex polyhedron if the mesh is convex or [`BodyOptions::hull`] is set, otherwise
+/// a solid, which may be open.
 ///
 /// # Errors
 /// [`BodyError`] if neither can be built, with the defects of the surface.

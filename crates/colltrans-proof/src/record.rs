@@ -102,8 +102,8 @@ always_present!(Ending, ObstacleId, f64, u32, usize, &str);
 /// Answer to any query about two bodies, for example a line of a batch.
 ///
 /// Fields that do not apply are omitted. Infinite numbers are `null`. These values along a direction, and their
-/// bounds, are multiples of the direction: `translation`, `exit`, `distance`, `offset_distance`, `back` and `on`.
-/// Lengths have the unit of the bodies.
+/// bounds, are multiples of the direction: `translation`, `exit`, the `distance` of a clearance, `offset_distance`,
+/// `back`, `on` and `rounding`. Lengths have the unit of the bodies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Record {

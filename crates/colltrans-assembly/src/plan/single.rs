@@ -1,8 +1,8 @@
 //! Parts that can be removed alone. Most steps of a plan remove one part and need no blocking graph.
 //!
-//! Invariant: for every present part and direction, either one present part that blocks it is stored (its *watched*
-//! part), or the direction is listed in `free`. Another blocker is searched only after the watched part is removed.
-//! Thus `n` parts in a row need `n` entries for each direction instead of `n^2`.
+//! Invariant: for every present part and every direction along which it may move, either one present part that blocks
+//! it is stored (its *watched* part), or the direction is listed in `free`. Another blocker is searched only after the
+//! watched part is removed. Thus `n` parts in a row need `n` entries for each direction instead of `n^2`.
 
 use std::collections::BTreeMap;
 

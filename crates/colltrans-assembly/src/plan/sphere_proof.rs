@@ -6,8 +6,8 @@
 //! the parts, blocks all directions of the cell; this is decided exactly. If these arcs make all parts one strongly
 //! connected component, no group leaves along any direction of the cell. With fixed parts it suffices that every
 //! component without leaving arcs contains a fixed part. Arcs of order constraints hold in all cells. Arcs of a cell
-//! also hold in its quarters. Arcs are computed on demand, as in [`lazy_search`](super::lazy_search): from components without
-//! leaving arcs to parts ahead of them along the cell's centre.
+//! also hold in its quarters. Arcs are computed on demand, as in [`lazy_search`](super::lazy_search): from components
+//! without leaving arcs to parts ahead of them along the cell's centre.
 
 use std::collections::HashMap;
 
@@ -96,7 +96,8 @@ pub(super) fn prove_interlocked(
     Ok(if open.is_empty() { SphereProof::Proven(cells) } else { SphereProof::Open(open) })
 }
 
-/// Checks whether all pairs block each other without exceptions: closed solids, no ignored pair, no minimum gap.
+/// Checks whether all pairs block each other without exceptions: closed solids, no minimum gap, no ignored overlap at
+/// the start, and no pair that is ignored, is a snap fit, or tolerates crossings.
 fn has_plain_contacts(bodies: &Bodies, parts: &[usize], start: StartOverlap) -> bool {
     let assembly = bodies.assembly();
     let lets_pass = |a, b| {

@@ -7,8 +7,8 @@
 //! `t`**. The complement of all intervals is closed. It consists of the openings, which may be single values.
 //!
 //! - The interval of two facets is not clipped to the range of `t`, because its clipped end would be an opening.
-//! - The box of differences of two nodes is sliced in the same way. A pair of nodes whose interval one blocked
-//!   interval covers is dismissed.
+//! - The box of differences of two nodes is sliced in the same way. A pair of nodes is dismissed if one blocked
+//!   interval covers its interval.
 //! - Of the pairs of children of a pair of nodes, the one with the widest interval is visited first.
 
 use glam::DVec3;

@@ -256,12 +256,14 @@ impl<'a> FreeDirections<'a> {
         connected_regions(&self.pieces(), |d| matches!(self.classify(d), Ok(Verdict::Free)))
     }
 
-    /// Returns the arcs of free directions that border no region of free or undecided directions.
+    /// Returns the arcs of free directions that border no region of free or undecided directions. If more than 20
+    /// million pairs of pieces would have to be compared, no arcs are reported although some may exist.
     pub fn arcs(&self) -> &[FreeArc] {
         &self.lower_dimensional().arcs
     }
 
-    /// Returns the free directions that have no free or undecided direction next to them.
+    /// Returns the free directions that have no free or undecided direction next to them. If more than 20 million
+    /// pairs of pieces would have to be compared, no points are reported although some may exist.
     pub fn points(&self) -> &[FreePoint] {
         &self.lower_dimensional().points
     }
@@ -322,8 +324,9 @@ impl<'a> FreeDirections<'a> {
     }
 
     /// Returns free directions in undecided cells. The candidates are corners of arcs and points that border
-    /// undecided directions, and corners and centers of undecided cells. At most 64 candidates are tested,
-    /// each by one cast.
+    /// undecided directions, and corners and centers of undecided cells. If [`arcs`](Self::arcs) exceeds its
+    /// limit, one corner of each arc and point is a candidate too. At most 64 candidates are tested, each by one
+    /// cast.
     pub fn free_among_undecided(&self) -> Vec<DVec3> {
         let undecided = |(cell, state): (Cell, &CellState)| match state {
             CellState::Undecided(_) => {

@@ -86,7 +86,7 @@ impl PartTravel {
 ///
 /// Of several contacts at one distance, the result names the first part of the group and the lowest index of the
 /// others. With [`StartOverlap::Ignore`], of several overlapping parts that stop a part within four times
-/// [`Fit::negligible`](crate::Fit), the result names one, with its distance.
+/// the negligible length of [`Fit`](crate::Fit), the result names one, with its distance.
 pub fn travel_of_group(
     bodies: &Bodies,
     group: &[usize],

@@ -5,7 +5,7 @@
 //! 1. *Features*: the last separating direction or portal. If the line has left the portal, gift wrapping
 //!    finds the next face, or slopes and curvatures predict a face farther away.
 //! 2. *Region* (only with [`Solver::Cta`](crate::Solver::Cta)): section levels around the last contact.
-//! 3. *Scratch*: a cast without a warm start.
+//! 3. *Scratch*: a cast without a warm start, also if either body is another object than in the last query.
 //!
 //! Invariant: every answer is proven by its own certificate, from the poses and the direction of its query.
 

@@ -1,4 +1,5 @@
-//! Proof that no group leaves the others by one translation in *any* direction.
+//! Proof that no group leaves the others by one translation in *any* direction. A plan reports the number of cells
+//! ([`Interlocked::proof_cells`](super::Interlocked::proof_cells)); no certificate is written.
 //!
 //! The proof does not cover parts that move at the same time in different directions.
 //!

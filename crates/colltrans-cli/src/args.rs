@@ -100,7 +100,8 @@ pub(crate) enum Command {
     /// Compute all directions along which a mesh can leave another, with a proof
     ///
     /// The answer is the whole set: regions of directions with their borders, arcs and isolated directions. All
-    /// others are blocked. Meshes are parts, as for `clearance --from`.
+    /// others are blocked, except for undecided ones, whose share is stated. Meshes are parts, as for
+    /// `clearance --from`.
     #[command(visible_alias = "free", after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[DIRECTIONS_NOTES]))]
     Directions(Box<DirectionsArguments>),
     /// Plan in which order and directions the parts of an assembly come out
@@ -240,7 +241,7 @@ impl<'a> InputPair<'a> {
     /// messages then suggest.
     ///
     /// # Errors
-    /// A file of obstacles is given in place of a mesh, or there are not two meshes and no `--from`.
+    /// A file of obstacles is given in place of a mesh, or there is no `--from` and another number of meshes than two.
     fn from_arguments(
         meshes: &'a [PathBuf],
         from: &'a [PathBuf],

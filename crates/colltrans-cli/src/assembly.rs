@@ -95,8 +95,8 @@ fn plan_in_pool(arguments: &AssemblyArguments) -> Result<(), Failure> {
     output::write(&found, &removals, arguments)
 }
 
-/// Returns the question about the plan. `sampled` are the directions of the file and the samples, `wanted` the parts to
-/// remove.
+/// Returns the request of the analysis: candidate directions, options of the plan and gravity. `sampled` are the
+/// directions of the file and the samples, `wanted` the parts to remove.
 fn plan_question(
     arguments: &AssemblyArguments,
     sampled: &[DVec3],

@@ -117,10 +117,10 @@ impl Directions {
     }
 }
 
-/// Reads a file with one direction per line.
+/// Reads a file with one direction per line. Empty lines and comments after `#` are skipped.
 ///
 /// # Errors
-/// A line is not a direction, or the file has none.
+/// The file cannot be read, a line is not a direction, or the file has none.
 fn read_directions(file: &Path) -> Result<Vec<DVec3>, Failure> {
     let input = |what: String| Failure::new(Code::Input, format!("{}: {what}", file.display()));
     let text = read_text_or_stdin(file)?;

@@ -26,10 +26,10 @@ struct Partial {
 }
 
 impl Output {
-    /// Creates the temporary file.
+    /// Creates the temporary file, or opens `path` itself if it is a device or a pipe.
     ///
     /// # Errors
-    /// The folder or the file cannot be written.
+    /// The folder or the existing file cannot be written, or `path` is a folder.
     pub(crate) fn create(path: &Path) -> io::Result<Self> {
         let replaced = Identity::of_path(path);
         let exists = path.metadata().is_ok();

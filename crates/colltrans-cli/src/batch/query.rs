@@ -122,7 +122,7 @@ impl Batch {
     /// Returns the body of a source, from the cache if possible.
     ///
     /// # Errors
-    /// The fields contradict each other, or the mesh does not become a body of this kind.
+    /// The fields contradict each other, the file cannot be read, or no body of this kind can be built.
     pub(crate) fn build_body(&self, source: &BodySource) -> BuildResult {
         let &BodySource { ref points, ref mesh, ref solid, open, hull, scale } = source;
         if open.is_some() && solid.is_none() {

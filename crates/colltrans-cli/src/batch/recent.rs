@@ -1,7 +1,7 @@
 //! Bodies by their text in a line, for one thread.
 //!
-//! Lines of one file often repeat the same text of a few bodies. A body that is still in the
-//! [`Cache`](super::cache::Cache) is found by its text, without parsing it.
+//! Lines of one file often repeat the same text of a few bodies. One of the last [`MAX_ENTRIES`] bodies is found by its
+//! text, without parsing it, while it is still in the [`Cache`](super::cache::Cache).
 //!
 //! Invariant: the references are weak, so that only the cache keeps bodies in memory.
 

@@ -1,5 +1,5 @@
 //! A picture of bodies that turn: the moving one solid at the start, and as ghosts where it first touches and at the end,
-//! with the path of its center. The fixed body is shown at the time of the contact.
+//! with the path of its center. The fixed body is shown at the time of the contact, or at the end without one.
 
 use colltrans::Pose;
 use colltrans::glam::DVec3;

@@ -17,8 +17,8 @@ const AZIMUTHS: u32 = 72;
 /// Number of faces above which the shape of a body does not affect the score.
 const MAX_SHAPE_FACES: usize = 1000;
 
-/// Returns the view with the best score. It shows `d` and `n` with little foreshortening and many faces of both bodies, if
-/// possible from the side from which `n` points away.
+/// Returns the view with the best score. It shows `d` and `n` with little foreshortening and many faces of both bodies.
+/// Views in which `n` points away from the viewer are preferred, so that the moving body is in front.
 pub(super) fn best_view(bodies: [&Solid; 2], d: DVec3, n: DVec3) -> View {
     let mut best = (f64::NEG_INFINITY, View::new(0.0, 0.0));
     for elevation in ELEVATIONS {

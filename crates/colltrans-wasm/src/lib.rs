@@ -1,8 +1,8 @@
 //! The library in a browser.
 //!
 //! Each module answers the questions of a part of the page and is linked as a WebAssembly module of its own,
-//! which the page loads on demand. [`page`] answers the first question of every visitor, so it is the
-//! smallest one. All modules export the same names ([`export`]).
+//! which the page loads on demand. [`page`] answers the first question of every visitor, so all that this
+//! question does not need is in other modules. All modules export the same names ([`export`]).
 //!
 //! Data flow: the page writes a question, JSON and optionally the bytes of a file, to a buffer ([`exports`])
 //! -> the state of the module answers it ([`Answers::ask`]) -> an [`Answer`]: JSON, and optionally binary

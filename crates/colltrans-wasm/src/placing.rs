@@ -54,7 +54,7 @@ impl Part {
 }
 
 impl Places {
-    /// Replaces a body by the body of a file.
+    /// Replaces a body by the body of a file. If this fails, the slot is empty.
     pub(crate) fn place(
         &mut self,
         slot: Slot,

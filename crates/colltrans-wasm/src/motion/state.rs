@@ -38,8 +38,8 @@ struct Request {
     /// A minimum gap.
     #[serde(default)]
     min_gap: f64,
-    /// For convex bodies a tolerated depth instead of a gap. If it is `None`, convex bodies have none, and
-    /// solids use the tolerance that follows from their files.
+    /// For convex bodies a tolerated depth, which excludes a gap; for solids their tolerance. The default is no depth
+    /// for convex bodies, and a tolerance that follows from the files for solids.
     #[serde(default)]
     tolerance: Option<f64>,
 }

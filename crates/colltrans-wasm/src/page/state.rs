@@ -20,8 +20,10 @@ pub struct State {
     fixed: Place,
 }
 
-/// The body of a slot, and a file that may replace it. If no body can be built from the file, the old body
-/// stays.
+/// The body of a slot, and the last file from which no body could be built.
+///
+/// A rejected file leaves the old body in place, with two exceptions that [`Refusal::gone`] reports: a large body is
+/// dropped before the next file is read, and a body is dropped if its own file is rejected in another way.
 #[derive(Debug, Default)]
 struct Place {
     body: Option<(File, Part)>,

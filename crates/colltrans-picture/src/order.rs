@@ -1,9 +1,10 @@
 //! Sorts facets back to front for painting (painter's algorithm).
 //!
-//! At each sample of the page, the covering facets determine which facet must be painted before another. Facets
-//! that are visible at no sample are removed. Facets in a cycle, such as those of intersecting bodies, are cut
-//! into four until no cycle remains. The remaining cycles are pixels wide, and are broken at the farthest
-//! facet. Facets of the same style are painted consecutively where possible.
+//! At each sample of the page, and at points along the longest side of each facet, the covering facets determine which
+//! facet must be painted before another. Facets that are visible at none of these points are removed. Facets in a
+//! cycle, such as those of intersecting bodies, are cut into four, in at most [`MAX_ROUNDS`] rounds and while they are
+//! larger than [`MIN_AREA`]. Cycles that remain are broken at the farthest facet. Facets of the same style are painted
+//! consecutively where possible.
 //!
 //! Source: the sort of Newell, Newell and Sancha (1972), with its tests evaluated at samples.
 
@@ -32,8 +33,8 @@ const MIN_AREA: f64 = 2.0;
 /// Maximum number of points at which a side is sampled.
 const MAX_POINTS: f64 = 1e4;
 
-/// Sorts facets back to front. The window begins at (0, 0); facets that are not visible in it are removed.
-/// Differences of depth up to the length `slack` are ignored.
+/// Sorts facets back to front. The window begins at (0, 0); facets that are not visible in it are removed. Facets in
+/// a cycle are cut, so the result may have more facets. Differences of depth up to the length `slack` are ignored.
 pub fn sort_back_to_front(
     mut facets: Vec<Facet>,
     window: Frame,
@@ -194,8 +195,8 @@ impl PaintRules {
         }
     }
 
-    /// Adds the pairs along the longest side of a facet. A facet may be too thin for any sample, or in front of
-    /// others only next to them.
+    /// Adds the pairs of a facet and of those in front of it, at points along its longest side. Samples alone miss
+    /// a facet that is too thin to cover one, or that is covered only between samples.
     fn add_side(
         &mut self,
         facet: u32,

@@ -1,6 +1,6 @@
 //! A depth buffer over the page.
 //!
-//! Notation. A *sample* is the centre of a cell of `1 / FINE` pixels. Depths increase towards the viewer.
+//! Notation. A *sample* is the centre of a cell of `1 / SAMPLES_PER_PIXEL` pixels. Depths increase towards the viewer.
 //!
 //! Invariant: each sample has the depth and the tone of the nearest triangle drawn so far that covers it.
 

@@ -7,7 +7,7 @@
 //! `coll = min { t : P + t d meets Q }`
 //!
 //! together with the contact normal, bounds that enclose `coll`, a contact point on each body, and the
-//! vertices, edges or faces in contact. If there is no contact, the cast proves that the bodies never meet.
+//! vertices, edges or faces in contact. If the bodies never meet, the cast proves it.
 //! `t` ranges over all real numbers. A negative value is a contact behind the moving body, or an overlap at
 //! the start. Every answer has a proof, which can be checked without trust in the search.
 //!
@@ -98,9 +98,9 @@
 //! # Accuracy
 //!
 //! The bounds of a contact enclose the exact collision translation of the given bodies:
-//! [`Certificate::lower`] `<= coll <=` [`Certificate::upper`]. They differ by at most 15 *noises* divided by
-//! `n . d`. A noise is `32 u S`, where `S` is the size of the configuration and `u = 2^-53`. [`Certificate`]
-//! has the details. The same input gives the same bits on every run, thread and platform.
+//! [`Certificate::lower`] `<= coll <=` [`Certificate::upper`]. They differ by at most [`Certificate::rounding`]:
+//! 15 *noises*, plus the bound on how far the bodies reach beyond their support points, divided by `n . d`. A
+//! noise is `32 u S`, where `S` is the size of the configuration and `u = 2^-53`. The same input gives the same bits on every run, thread and platform.
 //!
 //! # Serialisation
 //!

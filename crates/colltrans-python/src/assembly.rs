@@ -83,7 +83,7 @@ type PlanRows = (
     Vec<f64>,
     Planned,
 );
-/// SelectedRemoval parts, other removed parts, whether this set is proven to be the smallest, and whether the parts
+/// Selected parts, other removed parts, whether this set is proven to be the smallest, and whether the selected parts
 /// come out.
 type WantedRow = (Vec<usize>, Vec<usize>, bool, bool);
 /// Parts, number of tested directions, number of cells in which it is proven that no group can be removed,

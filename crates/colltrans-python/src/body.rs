@@ -207,10 +207,16 @@ impl ConvexPolyhedron {
     /// Parameters
     /// ----------
     /// face : int
+    ///     An index into :attr:`faces`.
     ///
     /// Returns
     /// -------
     /// ndarray of shape (3,)
+    ///
+    /// Raises
+    /// ------
+    /// IndexError
+    ///     There is no such face.
     fn face_normal<'py>(&self, py: Python<'py>, face: u32) -> PyResult<Vector<'py>> {
         if face as usize >= self.0.face_count() {
             return Err(PyIndexError::new_err(format!("there are {} faces", self.0.face_count())));
@@ -388,8 +394,8 @@ impl ConvexPolyhedron {
 /// convex_tolerance : float, optional
 ///     The maximum depth of the surface below its convex hull. The default is 1e-5 of its extent.
 /// merge_tolerance : float, optional
-///     Vertices on open edges within this distance are merged. The default is a few units in the last place
-///     of the largest coordinate.
+///     Vertices on open edges within this distance are merged. The default follows from the number format of
+///     the file: for example two units in the last place of single precision, or of printed digits.
 ///
 /// Returns
 /// -------

@@ -190,8 +190,8 @@ pub(crate) fn each<T: Send>(
 
 /// Processes all parts on `threads` threads, or on all processors.
 ///
-/// After a signal the second argument of `work` returns true, and the exception of the signal handler is
-/// returned.
+/// If a signal handler raises, the second argument of `work` returns true from then on, and the exception is
+/// returned after all threads have ended.
 fn run_on_threads<P: Send>(
     parts: Vec<P>,
     threads: Option<usize>,

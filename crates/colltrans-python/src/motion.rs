@@ -62,7 +62,8 @@ impl Motion {
     /// Raises
     /// ------
     /// QueryError
-    ///     The vector is not finite or out of range. All other methods raise this error too.
+    ///     The vector is not finite or out of range. All other methods that build a motion from numbers raise
+    ///     this error too.
     #[staticmethod]
     #[pyo3(signature = (by, *, pose=None))]
     fn slide(by: &Bound<'_, PyAny>, pose: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
@@ -295,10 +296,10 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
 ///     Three numbers are rejected, because they could be a displacement (:meth:`Motion.slide`) or a position
 ///     (:meth:`Motion.still`).
 /// min_gap : float
-///     A minimum gap, a length. The query then returns when the distance of the bodies first falls to it.
+///     A minimum gap, a length. With a gap, bodies count as meeting as soon as their distance falls to it.
 /// tolerance : float, optional
-///     For convex bodies a tolerated depth, instead of ``min_gap``: the query returns when they first overlap by
-///     more. Solids are shrunk by half of it; the default follows from the precision of their files and from
+///     For convex bodies a tolerated depth, instead of ``min_gap``: they count as meeting as soon as they overlap
+///     by more. Solids are shrunk by half of it; the default follows from the precision of their files and from
 ///     rounding.
 /// ignore_start_overlaps : bool
 ///     For :meth:`clearance` of solids: whether facets that cross at the start of the motion are ignored
@@ -949,8 +950,9 @@ pub(crate) fn first_contact(
 
 /// Computes how far along its motion a body can move.
 ///
-/// Touching bodies may slide, turn and separate. A body is stopped where it is pushed in by more than the
-/// tolerance, or without a tolerance by more than rounding errors of a fit.
+/// Touching bodies may slide, turn and separate. A body is stopped where it is pushed into the other one by more
+/// than the tolerance. Without a given tolerance, that of convex bodies is a multiple of the rounding errors, and
+/// that of solids follows from their files and from rounding.
 ///
 /// Parameters
 /// ----------

@@ -169,6 +169,12 @@ impl Obstacles {
     /// Returns
     /// -------
     /// list of int
+    ///     The numbers of the obstacles, in the order of the poses; see :meth:`add`.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     The numbers of bodies and poses differ.
     fn add_many(
         &self,
         py: Python<'_>,
@@ -362,7 +368,8 @@ impl Obstacles {
     /// Returns
     /// -------
     /// dict of ndarray
-    ///     Columns ``obstacle`` (-1 without obstacles), ``lower``, ``upper``, ``on_moving`` and ``on_fixed``.
+    ///     Columns ``obstacle`` (-1 without obstacles), ``lower`` and ``upper`` (infinite without obstacles),
+    ///     ``on_moving`` and ``on_fixed`` (NaN without obstacles).
     #[pyo3(signature = (body, poses, *, ignore=HashSet::new(), threads=None),
         text_signature = "($self, body, poses, *, ignore=(), threads=None)")]
     fn nearest_many<'py>(
@@ -409,7 +416,8 @@ impl Obstacles {
     /// -------
     /// dict of ndarray
     ///     Columns ``outcome`` (0 is blocked, 1 free, 2 overlapping), ``obstacle`` (-1 if nothing stops the
-    ///     body), ``distance`` (NaN for an overlap) and ``upper``.
+    ///     body), ``distance`` (NaN for an overlap) and ``upper``, an upper bound of the translation at which the
+    ///     body is stopped (infinite if nothing stops it, NaN for an overlap).
     #[pyo3(signature = (body, directions, poses, *, before=None, min_gap=0.0,
         ignore=HashSet::new(), threads=None), text_signature = "($self, body, directions, poses, \
         *, before=None, min_gap=0.0, ignore=(), threads=None)")]

@@ -43,8 +43,9 @@ pub(crate) struct Arguments<'a, 'py> {
 ///     A minimum gap, a length. With a gap all questions refer to the translation at which the distance falls
 ///     to the gap instead of contact. Points of answers are then the gap apart.
 /// solver : {"auto", "cta", "portal"} or Cta
-///     The search algorithm. Answers and certificates are the same. With "cta", the first query of a body
-///     that needs its sections builds them, which takes longer.
+///     The search algorithm. Answers are equally accurate; the normal and the features may differ if vertices
+///     or parallel edges meet. With "cta", the first query of a body that needs its sections builds them, which
+///     takes longer.
 ///
 /// Raises
 /// ------

@@ -301,7 +301,8 @@ question! {
     ///     A minimum gap, a length. With a gap the result is the translation at which the distance of the
     ///     bodies first falls to it.
     /// solver : {"auto", "cta", "portal"} or Cta
-    ///     The search algorithm. Answers and certificates are the same.
+    ///     The search algorithm. Answers are equally accurate; the normal and the features may differ if
+    ///     vertices or parallel edges meet.
     ///
     /// Returns
     /// -------

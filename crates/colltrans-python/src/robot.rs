@@ -269,7 +269,7 @@ impl Robot {
     /// ignore : list of tuple of (str, str)
     ///     Pairs of links, or of a link and a scene body, that are excluded from collision checks.
     /// min_gap : float
-    ///     A minimum gap. The query then returns when the distance of two bodies first falls to it.
+    ///     A minimum gap, in metres. With a gap, two bodies count as meeting as soon as their distance falls to it.
     /// joints : dict of str to float, optional
     ///     Joints with fixed values. These joints have no column.
     /// columns : list of str, optional

@@ -322,8 +322,8 @@ impl Solid {
     /// scale : float
     ///     Lengths are multiplied by this factor, after vertices are merged.
     /// merge_tolerance : float, optional
-    ///     Vertices on open edges within this distance are merged. The default is a few units in the last
-    ///     place of the largest coordinate.
+    ///     Vertices on open edges within this distance are merged. The default follows from the number format of
+    ///     the file: for example two units in the last place of single precision, or of printed digits.
     ///
     /// Returns
     /// -------

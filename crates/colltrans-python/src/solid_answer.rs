@@ -106,7 +106,8 @@ getters!(SolidFree, |it| {
     /// float: Infinite.
     distance: f64 = f64::INFINITY;
     /// float or None: The margin of a plane between the bodies, parallel to the direction, a length; None if
-    /// there is no such plane, because the body slides along the other one or moves away.
+    /// no such plane was found, for example because the body slides along the other one, moves away from it, or
+    /// passes through a hole.
     margin: Option<f64> = it.free.separation.map(|s| s.margin);
     /// ndarray of shape (3,) or None: Unit normal of that plane, in the world.
     normal(py): Option<Vector<'py>> = it.free.separation.map(|s| row(py, s.normal));

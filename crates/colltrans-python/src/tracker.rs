@@ -27,8 +27,9 @@ self_cell!(
 
 /// A tracker for sequences of similar queries. Each query starts from the previous answer.
 ///
-/// Outcomes and certificates equal those of the functions with the same names. Poses, directions and bodies
-/// may change arbitrarily: a poor start costs time but does not change the answer.
+/// Answers are as accurate as those of the functions with the same names; the normal and the points may differ if
+/// vertices or parallel edges meet. Poses, directions and bodies may change arbitrarily: a poor start only costs
+/// time.
 ///
 /// Parameters
 /// ----------

@@ -109,7 +109,8 @@ impl WaysOut {
 /// moving_pose, fixed_pose : array_like or Pose, optional
 ///     Poses of the bodies in the world; see :class:`Pose`.
 /// tolerance : float, optional
-///     See :class:`SolidCast`. Both bodies are shrunk by half of it.
+///     Both bodies are shrunk by half of this length. The default is what rotated poses need; unlike that of
+///     :class:`SolidCast`, it does not follow from the precision of files.
 /// legs : int
 ///     The maximum number of moves.
 /// directions : array_like of shape (D, 3)

@@ -1,6 +1,7 @@
 //! The solver and the work of an answer.
 
-/// How the search is narrowed. The answer, its certificate and its accuracy do not depend on this choice.
+/// How the search is narrowed. The accuracy of the answer does not depend on this choice. The normal, the features and
+/// the certificate may depend on it where they are not unique, for example if vertices or parallel edges meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(
     feature = "serde",

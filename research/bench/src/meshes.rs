@@ -24,7 +24,7 @@ impl MeshArguments {
     }
 
     /// Returns the selected pairs, each mesh centred on its box: first the given ones, then those read from
-    /// files. Missing files are skipped.
+    /// files. Missing files are skipped, invalid ones with a message.
     pub fn pairs(
         &self,
         made: Vec<(&str, [Mesh; 2])>,

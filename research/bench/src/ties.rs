@@ -115,7 +115,7 @@ impl Tie {
         DVec3::new(x, y, ahead)
     }
 
-    /// Draws a tied setting.
+    /// Draws a tied setting, or for [`Placement::General`] a setting in which the bodies collide in general position.
     ///
     /// # Panics
     /// Never, because the poses are in range.

@@ -3,8 +3,8 @@
 //! There are four groups. *Pairs* have random rotations and directions. *Convex* measures pairs of convex
 //! bodies, also with the cast of convex polyhedra. *Growth* measures the same bumpy ball with more and more
 //! facets. *Flat* measures two slabs with few or many facets in one plane: resting, sliding, parting, with a
-//! gap, or passing over each other. Each query is measured alone, with both libraries on the same settings, 50
-//! at a time in turns. Otherwise the caches would contain the data of the other library.
+//! gap, or passing over each other. Both libraries answer the same settings. Each query is timed alone. The libraries
+//! alternate after blocks of 50 queries, so that the caches contain mostly their own data.
 //!
 //! A pair has four kinds of starts. *Far*: the moving mesh is 1.05 times the sum of the radii before the fixed
 //! one and up to 0.7 times to the side. *Near*: the meshes meet, and the start is [`NEAR`] times the sum before

@@ -7,8 +7,9 @@
 //! - *Planes.* Each plane has the claimed gap at its time.
 //! - *Intervals.* At times between two planes, the bodies are separated by the plane `(1 - x) n_a + x n_b`, by
 //!   the first plane rotated with the moving body, or by the plane that is marked as sufficient alone.
-//! - *Meeting.* The origin is below all triangles of the surface that proves a depth, in the positions of the
-//!   real motion. Because they enclose the origin in the computed positions, they do so continuously.
+//! - *Meeting.* A depth is proven by a closed surface of triangles of `M` around the origin. The origin is below all of
+//!   its triangles, also in the positions of the real motion. Because the surface encloses the origin in the computed
+//!   positions, it does so there too.
 
 use std::ops::{Add, Mul, Neg, Sub};
 use std::sync::LazyLock;
@@ -32,7 +33,7 @@ const BETWEEN: i64 = 6;
 pub struct Fixed(IBig);
 
 impl Fixed {
-    /// Converts an `f64`. Bits below `2^-480` are cut off if there are any.
+    /// Converts an `f64`. A number with bits below `2^-480` becomes 0.
     fn new(x: f64) -> Self {
         let exact = Dyadic::new(x);
         let finest = -(BITS as i32);

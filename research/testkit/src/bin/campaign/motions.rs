@@ -197,7 +197,7 @@ fn apart_until(first: &MotionOutcome) -> f64 {
     }
 }
 
-/// Checks that the bodies are not nearer than `min_gap` up to a time, or not deeper than `-keep` if it is
+/// Checks that the bodies are not nearer than `min_gap` up to a time, or not deeper than `-min_gap` if it is
 /// negative.
 fn on_the_way(cast: &MotionCast, until: f64, min_gap: f64) -> Result<(), Objection> {
     for k in 0..=TIMES {

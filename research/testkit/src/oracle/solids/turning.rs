@@ -189,8 +189,8 @@ impl Turning {
         if matches!(outcome, MotionOutcome::Overlapping(_)) {
             return Ok(());
         }
-        // Poses in the world are rounded at large distances. There, bodies are checked with a small tolerance,
-        // and not for the meeting.
+        // Far from the origin, poses in the world have a large rounding error. There, the check that the bodies do not
+        // overlap has a larger tolerance, and the check that they meet is left out.
         let far = self.motions.iter().map(|motion| {
             let ends =
                 [0.0, lower].map(|t| motion.pose_at(t).map_or(0.0, |at| at.translation().length()));

@@ -122,7 +122,7 @@ impl Setting {
         middle.along_motion(bodies, motion, delta, count, random)
     }
 
-    /// As [`sequence`](Self::sequence), with this kind of motion.
+    /// Draws a sequence like [`sequence`](Self::sequence), of bodies that meet, with this kind of motion.
     ///
     /// # Panics
     /// If the bodies are out of the range of poses.

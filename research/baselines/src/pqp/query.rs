@@ -104,8 +104,8 @@ impl<'a> Pqp<'a> {
     }
 
     /// Computes a pair of points whose distance exceeds that of the surfaces by at most `absolute_error`
-    /// *and* by at most `relative_error` times that distance. As published, the smaller of both errors
-    /// counts; pass infinity for one to use the other. Negative errors and NaN count as 0.
+    /// *and* by at most `relative_error` times that distance, or by two noises if these are more. As published, the
+    /// smaller of both errors counts; pass infinity for one to use the other. Negative errors and NaN count as 0.
     pub fn distance_within(
         &mut self,
         moving_pose: &Pose,

@@ -87,8 +87,8 @@ impl View<'_> {
         self.own.outgoing(v).iter().find(beyond).map(|&h| self.own.edge(h))
     }
 
-    /// Returns, for vertex `v` and an edge of the other body, an edge through whose plane the nearest point
-    /// is left; `None` if the nearest point is in the region.
+    /// Returns, for vertex `v` and an edge of the other body, an edge at `v` beyond whose Voronoi plane the other edge is
+    /// nearer; `None` if its nearest point is in the region of `v`.
     pub(crate) fn vertex_edge(&self, v: u32, other: u32) -> Option<Feature> {
         let edge = self.seen_edge(other);
         let mut clip = Clip::default();
@@ -130,9 +130,9 @@ impl View<'_> {
         }
     }
 
-    /// Returns, for edge `h` and an edge of the other body, the neighbour through whose plane the nearest
-    /// point is left; `None` if it is in the region. Tests first the planes of the ends, then those of the
-    /// faces.
+    /// Returns, for edge `h` and an edge of the other body, the neighbour of `h` beyond whose Voronoi plane the other
+    /// edge is nearer; `None` if its nearest point is in the region of `h`. Tests first the planes of the ends, then
+    /// those of the faces.
     pub(crate) fn edge_edge(&self, h: u32, other: u32) -> Option<Feature> {
         let edge = self.seen_edge(other);
         let mut clip = Clip::default();

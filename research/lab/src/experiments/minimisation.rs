@@ -1,9 +1,9 @@
 //! Section III: the effect of a step of the minimisation. Measures the remaining share of the region and its number
 //! of sides, whether the new solution is in the neighbourhood of the last one, and the savings of shifted cut lines.
 //!
-//! The method before the paper's, its reference 3, cuts through the centroid of the remaining region and searches
-//! rectangles of a grid instead of cells of the mark. Here only its cuts are used
-//! ([`colltrans::cta::Cuts::Centroid`]). A search ends, like the paper's, where the best point of a cell solves the
+//! The earlier method of the same authors (reference 3 of the paper) cuts through the centroid of the remaining region
+//! and searches rectangles of a grid. The paper searches the cells of the *mark*, in each of which the same features
+//! touch. Here only the cuts of the earlier method are used ([`colltrans::cta::Cuts::Centroid`]). A search ends, like the paper's, where the best point of a cell solves the
 //! problem.
 
 use colltrans::observe::{Cut, Observer, PlanarProblem, SectionContact, Sections};

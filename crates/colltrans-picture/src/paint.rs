@@ -1,5 +1,6 @@
 //! Colours of bodies that are distinguishable with any colour vision: the moving body is blue, the fixed body
-//! sand. The page (`web/src/colours.ts`) and Python (`pictures.py`) use the same colours.
+//! sand. The page (`web/src/colours.ts`) and Python (`pictures.py`) use other shades of the same hues. The page has the
+//! same colours of marks.
 
 /// The colours of a body.
 #[derive(Debug, Clone, Copy)]

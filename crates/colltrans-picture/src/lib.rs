@@ -1,8 +1,8 @@
 //! Draws bodies and answers as SVG, for the command line and for reports.
 //!
 //! [`View`] projects the scene. A [`Raster`] of depths determines the visible surfaces, and the visible parts of the
-//! edges that [`edges()`] finds. [`sort_back_to_front`] sorts facets so that they can be painted back to front. [`Page`]
-//! writes areas, lines and text. [`Paint`] has the colours of the moving and of the fixed body.
+//! edges that [`edges()`] finds. [`sort_back_to_front`] sorts facets so that they can be painted back to front.
+//! [`Page`] writes areas, lines and text. [`Paint`] has the colours of the moving and of the fixed body.
 
 mod edges;
 mod grid;

@@ -99,8 +99,9 @@
 //!
 //! The bounds of a contact enclose the exact collision translation of the given bodies:
 //! [`Certificate::lower`] `<= coll <=` [`Certificate::upper`]. They differ by at most [`Certificate::rounding`]:
-//! 15 *noises*, plus the bound on how far the bodies reach beyond their support points, divided by `n . d`. A
-//! noise is `32 u S`, where `S` is the size of the configuration and `u = 2^-53`. The same input gives the same bits on every run, thread and platform.
+//! 15 *noises*, plus the bound on how far the bodies reach beyond their support points, divided by `n . d`. A noise is
+//! `32 u S`, where `S` is the size of the configuration and `u = 2^-53`. The same input gives the same bits on every
+//! run, thread and platform.
 //!
 //! # Serialisation
 //!

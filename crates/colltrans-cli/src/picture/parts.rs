@@ -2,8 +2,8 @@
 //!
 //! A depth buffer ([`Raster`]) decides which faces and which pieces of edges are visible, to half a pixel. This works
 //! for all surfaces in all positions, in time linear in faces and pixels. The drawn edges are outlines (between
-//! a face towards the viewer and a face away from the viewer) and creases (bent by more than [`SMOOTH`]). If there are
-//! few edges, their hidden pieces are dashed.
+//! a face towards the viewer and a face away from the viewer) and creases (the cosine of the angle between their faces
+//! is below [`SMOOTH_COSINE`]). If there are few edges, their hidden pieces are dashed.
 
 use std::borrow::Cow;
 use std::path::Path;

@@ -271,8 +271,8 @@ fn check_thickness(cast: &Cast<'_, Solid>, tolerance: f64) -> Result<(), QueryEr
 }
 
 /// Returns the tolerance of casts without a given one. It is 0 if both matrices permute axes and change signs
-/// (`permuted`), and eight times `noise` otherwise. For bodies from files, `colltrans_mesh::body::cast_between` raises it
-/// to twice the sum of their precisions, if that is more.
+/// (`permuted`), and eight times `noise` otherwise. For bodies from files, `colltrans_mesh::body::cast_between` raises
+/// it to twice the sum of their precisions, if that is more.
 fn default_tolerance(permuted: bool, noise: f64) -> f64 {
     if permuted { 0.0 } else { DEFAULT_TOLERANCE_NOISES * noise }
 }

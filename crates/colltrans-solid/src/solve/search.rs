@@ -3,9 +3,9 @@
 //! - A pair of nodes stands for all pairs of their facets. The least bound is split next, the newest of equal ones.
 //! - Bounds of gaps that block are clamped at 0. Therefore a contact at the start is found by descending straight down:
 //!   until a pair of facets is found, the search continues with the better child.
-//! - The search ends when no bound is smaller than the best gap found, lowered by [`SLACK`] noises. Ties: a pair of facets
-//!   replaces the best one only if its gap is smaller by more than this, so that of equal gaps the first one examined is
-//!   reported.
+//! - The search ends when no bound is smaller than the best gap found, lowered by [`SLACK`] noises. Ties: a pair of
+//!   facets replaces the best one only if its gap is smaller by more than this, so that of equal gaps the first one
+//!   examined is reported.
 //! - Every pair of nodes that is not split is a *cut* with a [`Reason`]. Together the cuts form the cover, which proves
 //!   that nothing blocks earlier.
 

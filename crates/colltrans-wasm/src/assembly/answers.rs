@@ -1,7 +1,7 @@
 //! Answers about assemblies as the page reads them: records of the library, and data to draw.
 //!
-//! Binary numbers are little-endian: single precision, and `u32` for indices. Vertices are relative to the middle of the
-//! assembly.
+//! Binary numbers are little-endian: single precision, and `u32` for indices. Vertices are relative to the middle of
+//! the assembly.
 
 use colltrans::Aabb;
 use colltrans_assembly::blocking::BlockingGraph;

@@ -238,8 +238,8 @@ fn without_component_along(apart: DVec3, [a, b]: [DVec3; 2], share: f64) -> DVec
     apart - along * apart.dot(along)
 }
 
-/// Returns the common normal of two edges, or `apart` without its component along the first edge if the edges are nearly
-/// parallel and this vector is more accurate.
+/// Returns the common normal of two edges, or `apart` without its component along the first edge if the edges are
+/// nearly parallel and this vector is more accurate.
 fn common_normal(apart: DVec3, [a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> DVec3 {
     let normal = (b - a).normalize_or_zero().cross((d - c).normalize_or_zero());
     let length = apart.length();

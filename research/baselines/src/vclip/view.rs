@@ -87,8 +87,8 @@ impl View<'_> {
         self.own.outgoing(v).iter().find(beyond).map(|&h| self.own.edge(h))
     }
 
-    /// Returns, for vertex `v` and an edge of the other body, an edge at `v` beyond whose Voronoi plane the other edge is
-    /// nearer; `None` if its nearest point is in the region of `v`.
+    /// Returns, for vertex `v` and an edge of the other body, an edge at `v` beyond whose Voronoi plane the other edge
+    /// is nearer; `None` if its nearest point is in the region of `v`.
     pub(crate) fn vertex_edge(&self, v: u32, other: u32) -> Option<Feature> {
         let edge = self.seen_edge(other);
         let mut clip = Clip::default();

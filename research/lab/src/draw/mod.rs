@@ -127,8 +127,8 @@ fn build_scene(
     render_multiple(plots, layout)
 }
 
-/// Returns a function that shifts positions on the horizontal axis by a few pixels for curve `k` of `count`, so that marks
-/// and bars of curves at the same positions do not hide each other.
+/// Returns a function that shifts positions on the horizontal axis by a few pixels for curve `k` of `count`, so that
+/// marks and bars of curves at the same positions do not hide each other.
 fn aside(figure: &Figure, x: (f64, f64), k: usize, count: usize) -> impl Fn(f64) -> f64 + use<> {
     const SPREAD: f64 = 0.035;
     let share = SPREAD * ((k as f64 + 0.5) / count as f64 - 0.5);

@@ -3,8 +3,8 @@
 //!
 //! The earlier method of the same authors (reference 3 of the paper) cuts through the centroid of the remaining region
 //! and searches rectangles of a grid. The paper searches the cells of the *mark*, in each of which the same features
-//! touch. Here only the cuts of the earlier method are used ([`colltrans::cta::Cuts::Centroid`]). A search ends, like the paper's, where the best point of a cell solves the
-//! problem.
+//! touch. Here only the cuts of the earlier method are used ([`colltrans::cta::Cuts::Centroid`]). A search ends, like
+//! the paper's, where the best point of a cell solves the problem.
 
 use colltrans::observe::{Cut, Observer, PlanarProblem, SectionContact, Sections};
 use colltrans::{Outcome, cta};

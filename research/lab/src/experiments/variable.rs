@@ -334,8 +334,9 @@ fn dispersion_claims(
     ]
 }
 
-/// Returns two relative standard deviations in per cent, each averaged over the coherences, with the best parameter: that
-/// of the mean number of iterations over the sequences, and that of a Poisson count with this mean `m`, `1 / sqrt(m)`.
+/// Returns two relative standard deviations in per cent, each averaged over the coherences, with the best parameter:
+/// that of the mean number of iterations over the sequences, and that of a Poisson count with this mean `m`,
+/// `1 / sqrt(m)`.
 fn of_sequences(sweeps: &Sweeps, which: usize, alphas: std::ops::Range<usize>) -> [f64; 2] {
     let sweep = sweeps.sweep(which);
     let at = |alpha: usize| {

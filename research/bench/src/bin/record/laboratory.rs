@@ -12,8 +12,8 @@ use super::{Failure, number, string};
 const VERDICTS: [Verdict; 4] =
     [Verdict::Holds, Verdict::Better, Verdict::Undecided, Verdict::Fails];
 
-/// Formats the provenance, every claim of the first run, both readings of "thin", and the reasons where a claim does not
-/// hold or is undecided. Rejects runs without results for all claims.
+/// Formats the provenance, every claim of the first run, both readings of "thin", and the reasons where a claim does
+/// not hold or is undecided. Rejects runs without results for all claims.
 pub(super) fn claims(run: &Value, again: &Value, all: usize) -> Result<String, Failure> {
     let mut page = String::new();
     write_provenance(&mut page, run, again, all)?;

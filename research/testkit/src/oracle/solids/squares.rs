@@ -283,8 +283,8 @@ impl SquareCrossing {
         found
     }
 
-    /// Adds pieces that cross where they meet. A meeting at a single `t` counts only at the start, as an overlap. At any
-    /// other `t` the pieces next to these decide.
+    /// Adds pieces that cross where they meet. A meeting at a single `t` counts only at the start, as an overlap. At
+    /// any other `t` the pieces next to these decide.
     fn through(&mut self, grid: &InGrid, p: &Piece, q: &Piece) {
         let zero = Ratio::from_f64(0.0);
         match meeting_times(grid, p, q) {

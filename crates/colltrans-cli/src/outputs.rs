@@ -170,8 +170,9 @@ pub(crate) fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
     output.finish_new()
 }
 
-/// Makes distinct file names of arbitrary names. Letters, digits and `-_.` stay. Names that would be the same file,
-/// also on systems that ignore the case of letters, get different numbers.
+/// Makes distinct file names of arbitrary names. Letters, digits and `-_.` stay, other characters become `_`, and long
+/// names are cut at [`MAX_NAME_BYTES`]. Names that would be the same file, also on systems that ignore the case of
+/// letters, get different numbers.
 #[derive(Default)]
 pub(crate) struct FileNames(std::collections::HashSet<String>);
 

@@ -238,6 +238,11 @@ impl Obstacles {
     /// Returns
     /// -------
     /// Pose
+    ///
+    /// Raises
+    /// ------
+    /// KeyError
+    ///     There is no such obstacle.
     fn pose(&self, py: Python<'_>, obstacle: u64) -> PyResult<Pose> {
         let at = || self.scene.read().obstacles.get(ObstacleId(obstacle)).map(|(_, pose)| pose);
         py.detach(at).map(Pose).ok_or_else(|| unknown_obstacle_error(obstacle))

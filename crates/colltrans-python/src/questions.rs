@@ -125,7 +125,8 @@ impl SolidCast {
     /// Returns
     /// -------
     /// float
-    ///     The difference of the bounds of the distance, in multiples of the direction.
+    ///     The distance minus its proven lower bound, in multiples of the direction; 0 if nothing blocks or the
+    ///     bodies overlap.
     ///
     /// Raises
     /// ------

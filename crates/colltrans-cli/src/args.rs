@@ -100,8 +100,7 @@ pub(crate) enum Command {
     /// Compute all directions along which a mesh can leave another, with a proof
     ///
     /// The answer is the whole set: regions of directions with their borders, arcs and isolated directions. All
-    /// others are blocked, except for undecided ones, whose share is stated. Meshes are parts, as for
-    /// `clearance --from`.
+    /// others are blocked, or undecided where the limits end the work. Meshes are parts, as for `clearance --from`.
     #[command(visible_alias = "free", after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[DIRECTIONS_NOTES]))]
     Directions(Box<DirectionsArguments>),
     /// Plan in which order and directions the parts of an assembly come out

@@ -74,7 +74,7 @@ fn undecided_failure(record: &PathRecord) -> Option<Failure> {
     };
     let message = format!(
         "the search between {a} and {b} took its maximum number of steps: no two bodies meet before {}; later contacts of \
-         these two are undecided; leave the pair out with --ignore {a},{b}, or give a minimum gap with --min_gap",
+         these two are undecided; leave the pair out with --ignore {a},{b}, or give a minimum gap with --min-gap",
         number(time.lower)
     );
     Some(Failure::new(Code::Query, message))

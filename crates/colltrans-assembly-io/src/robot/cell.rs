@@ -143,14 +143,14 @@ impl Cell {
         if self.pairs.is_empty() { Err(RobotError::NoPair) } else { Ok(self) }
     }
 
-    /// Builds the query whether the distance of the bodies of a pair falls below `keep`, a length, on a path.
+    /// Builds the query whether the distance of the bodies of a pair falls below `min_gap`, a length, on a path.
     ///
     /// # Errors
     /// The errors of [`PathCast::new`], and [`PathError`] if the gap is invalid.
     pub fn path_cast<'a>(
         &'a self,
         path: &'a JointPath,
-        keep: f64,
+        min_gap: f64,
     ) -> Result<PathCast<'a>, PathError> {
         let links = self.robot.links().iter();
         let carried = links.flat_map(|link| link.bodies.iter().map(|body| (link.frame, body)));
@@ -158,7 +158,7 @@ impl Cell {
             carried.map(|(frame, body)| PathBody { frame, placed: body.at(Pose::IDENTITY) });
         let scene = self.scene.iter().map(|body| PathBody::at_rest(body.at(Pose::IDENTITY)));
         let bodies = carried.chain(scene).collect();
-        PathCast::new(self.robot.mechanism(), path, bodies, self.pairs.clone())?.with_min_gap(keep)
+        PathCast::new(self.robot.mechanism(), path, bodies, self.pairs.clone())?.with_min_gap(min_gap)
     }
 
     /// Returns the message of an error with the names of bodies and joints instead of their numbers.

@@ -301,7 +301,7 @@ pub(super) const MOTION_NOTES: &str = "\
 Answers:
   contact      the bodies first touch at a time between two bounds
   grazing      they come nearer than rounding resolves; nothing is stated about later times
-  free         they never touch; with --min_gap never come as near, with --tolerance never overlap by more
+  free         they never touch; with --min-gap never come as near, with --tolerance never overlap by more
   overlapping  they overlap when the motion begins
   blocked      with --clearance, instead of contact and grazing: free until the first time
 Of several meshes it is the first contact of any pair.
@@ -358,7 +358,7 @@ Examples:
   Is this path free for the links and two meshes of the scene?
     colltrans path arm.urdf path.csv table.stl wall.stl --srdf arm.srdf
   With a minimum gap of 5 mm, fixed fingers and a proof:
-    colltrans path arm.urdf path.csv --joint finger=0.02 --min_gap 0.005 --save-proof path.json
+    colltrans path arm.urdf path.csv --joint finger=0.02 --min-gap 0.005 --save-proof path.json
     colltrans verify path.json
 
 `colltrans help files`: mesh formats and exit codes.";
@@ -401,7 +401,7 @@ Answers:
   undecided  the length lies between the bounds of the distance, a few roundings apart
 
 Examples:
-  Does a part min_gap a gap of 0.5 to its housing?
+  Does a part keep a gap of 0.5 to its housing?
     colltrans within shaft.stl --from housing.stl --length 0.5
   Which bodies of a scene are closer than 0.1?
     colltrans within hand.stl --scene scene.jsonl --length 0.1

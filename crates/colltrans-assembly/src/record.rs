@@ -1,6 +1,6 @@
 //! Results as JSON, for the command line and for web pages.
 //!
-//! Parts are referred to by name. Directions have length 1. `docs/guide/assemblies.md` describes the fields,
+//! Parts are referred to by name. Directions have length 1. `colltrans help json` lists the fields,
 //! and `docs/answers.schema.json` defines them.
 
 use colltrans::solid::ShellKind;

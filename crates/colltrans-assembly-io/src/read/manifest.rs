@@ -1,6 +1,6 @@
 //! Reads a manifest: files, their placement, fixed parts, pairs with a fit, and constraints on plans.
 //!
-//! TOML and JSON have the same fields, which `docs/guide/assemblies.md` lists.
+//! TOML and JSON have the same fields, which `docs/reference/assemblies.md` and `colltrans help files` list.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -9,7 +9,7 @@ use crate::hints::find_hints;
 use crate::record;
 use crate::travel::PartTravel;
 
-/// Returns all findings as JSON. `docs/guide/assemblies.md` describes the fields.
+/// Returns all findings as JSON. `colltrans help json` lists the fields.
 pub fn findings_json(f: &Analysis) -> Value {
     let assembly = f.bodies.assembly();
     let parts = assembly.parts().iter().enumerate().map(|(k, part)| {

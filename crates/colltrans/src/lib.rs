@@ -124,13 +124,13 @@
 //! # Algorithm
 //!
 //! The Minkowski difference `M = {q - p}` is never built. A search finds the face of `M` that the line `t d`
-//! enters first. *Portal refinement* exchanges the corners of a triangle of points of `M` that the line
-//! pierces. It runs alone, or after the *collision translation algorithm*, a convex minimisation over pairs
-//! of planar sections of the bodies. Reference: Mirolo, Carpin and Pagello, "Incremental Convex Minimization
-//! for Computing Collision Translations of Convex Polyhedra", IEEE Transactions on Robotics 23(3), 2007,
-//! which comments call *the paper*. Both methods end in the same portal. The plane of this portal gives the
-//! lower bound, its corners give the upper bound. If rounding prevents a decision on which side of an edge
-//! the line passes, exact integers decide.
+//! enters first. *Portal refinement*, a method of Snethen (`XenoCollide`, 2008), exchanges the corners of a
+//! triangle of points of `M` that the line pierces. It runs alone, or after the *collision translation
+//! algorithm*, a convex minimisation over pairs of planar sections of the bodies. Reference: Mirolo, Carpin
+//! and Pagello, "Incremental Convex Minimization for Computing Collision Translations of Convex Polyhedra",
+//! IEEE Transactions on Robotics 23(3), 2007, which comments call *the paper*. Both methods end in the same
+//! portal. The plane of this portal gives the lower bound, its corners give the upper bound. If rounding
+//! prevents a decision on which side of an edge the line passes, exact integers decide.
 //!
 //! # Features
 //!

@@ -24,8 +24,9 @@ pub enum Solver {
     /// degenerate. A body's first cast that solves a planar problem builds its sections
     /// ([`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections)).
     Cta,
-    /// Portal refinement. In a [`Tracker`](crate::Tracker) it can start from the last answer. Otherwise it starts
-    /// from a pair of large opposed faces if this pair gives the answer, else from a guess of the contact normal.
+    /// Minkowski portal refinement (Snethen 2008) along the line of the cast, with exact decisions. In a
+    /// [`Tracker`](crate::Tracker) it can start from the last answer. Otherwise it starts from a pair of large
+    /// opposed faces if this pair gives the answer, else from a guess of the contact normal.
     Portal,
 }
 

@@ -1,4 +1,5 @@
-//! Finds a first portal, three points of `M` whose shadows enclose the line, or a separating line.
+//! Finds a first portal, three points of `M` whose shadows enclose the line, or a separating line (*portal discovery*
+//! in Snethen's method).
 //!
 //! Invariant: the search holds one or two points. Two points `from`, `to` have the line on their left.
 //!

@@ -1,8 +1,8 @@
-//! Portal refinement: computes the lowest face of `M` on the line `t d` (theory: `docs/theory/portals.md`).
+//! Minkowski portal refinement (Snethen, `XenoCollide`, Game Programming Gems 7, 2008) along the line `t d`: computes
+//! the lowest face of `M` on the line (`docs/theory/portals.md`; what is added: `docs/theory/related.md`).
 //!
-//! In the shadow frame, in which `d` has length 1:
-//! - A *slope* `a` stands for the normal `n = (a, 1)`. The collision translation is the maximum of the concave
-//!   function `f(a) = min over m in M of n.m`.
+//! In the shadow frame, in which `d` has length 1, a *slope* `a` stands for the normal `n = (a, 1)`. The collision
+//! translation is the maximum of the concave function `f(a) = min over m in M of n.m`.
 //! - A *tangent* is a point of `M` with a slope along which it is lowest.
 //! - A *portal* is a triangle of points of `M` whose shadow contains the line.
 //!

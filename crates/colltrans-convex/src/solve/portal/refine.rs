@@ -1,4 +1,5 @@
-//! Refines a portal to the lowest face of `M` on the line (narrow portals: `docs/theory/portals.md`).
+//! Refines a portal to the lowest face of `M` on the line, in steps of Snethen's portal refinement (narrow portals:
+//! `docs/theory/portals.md`).
 //!
 //! - *Invariant*: the three shadows contain the line, counter-clockwise. This is decided exactly, with ties broken
 //!   consistently.

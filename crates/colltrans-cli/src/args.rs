@@ -203,7 +203,7 @@ pub(crate) struct PairArguments {
     /// for the rounding error
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, default_value = "0", hide_short_help = true)]
     pub(crate) graze_tolerance: f64,
-    /// Convex bodies: the algorithm; answers are equally accurate
+    /// Convex bodies: the algorithm; same answer (cta: Mirolo, Carpin, Pagello 2007)
     #[arg(long, value_parser = solver(), default_value_t = Solver::Auto, hide_short_help = true)]
     pub(crate) solver: Solver,
     #[command(flatten)]

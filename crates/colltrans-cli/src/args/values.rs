@@ -56,8 +56,11 @@ pub(crate) fn solver() -> impl TypedValueParser<Value = Solver> {
             Solver::Auto,
             "The algorithm that was measured to be fastest for bodies of these sizes",
         ),
-        named(Solver::Cta, "The collision translation algorithm, over planar sections (the paper)"),
-        named(Solver::Portal, "Portal refinement"),
+        named(
+            Solver::Cta,
+            "The algorithm of Mirolo, Carpin, Pagello 2007 (the paper), over planar sections",
+        ),
+        named(Solver::Portal, "Minkowski portal refinement (Snethen 2008) along a line"),
     ])
     .try_map(|name| name.parse::<Solver>())
 }

@@ -322,7 +322,7 @@ fn largest_defect(matrix: DMat3) -> f64 {
 }
 
 /// Returns the rotation nearest to a matrix that is close to one, by Newton's iteration for the polar factor,
-/// `R <- (R + R^-T) / 2` (Higham, "Computing the polar decomposition", 1986).
+/// `R <- (R + R^-T) / 2` (Higham, "Computing the polar decomposition - with applications", 1986).
 #[inline]
 fn nearest_rotation(matrix: DMat3) -> DMat3 {
     let mut rotation = matrix;

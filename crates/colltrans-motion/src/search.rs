@@ -1,6 +1,7 @@
 //! Searches a span for the first contact of two bodies.
 //!
-//! Algorithm: conservative advancement with a curvature bound (`docs/theory/conservative-advancement.md`).
+//! Algorithm: conservative advancement (Mirtich 1996) with a curvature bound instead of a velocity bound
+//! (`docs/theory/conservative-advancement.md`).
 //!
 //! - The *front* is the last plane up to which all times are proven. `gap` and `rate` are its gap and its closing
 //!   speed.

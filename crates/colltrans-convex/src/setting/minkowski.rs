@@ -368,9 +368,9 @@ impl<'a> MinkowskiDifference<'a> {
     /// the shadows of two points.
     ///
     /// The decision is exact: a rounded determinant if its error allows, otherwise exact arithmetic. Ties are
-    /// broken by simulation of simplicity: the line is displaced symbolically by `(eps, eps^2)`. It is
-    /// therefore never *on* a segment, and three consistent answers always mean a triangle that contains it.
-    /// The points of a widened `M` are their rounded coordinates.
+    /// broken by simulation of simplicity (Edelsbrunner and Muecke, ACM Transactions on Graphics 9(1), 1990): the
+    /// line is displaced symbolically by `(eps, eps^2)`. It is therefore never *on* a segment, and three consistent
+    /// answers always mean a triangle that contains it.
     #[inline]
     pub(crate) fn is_left(&self, from: &ShadowPoint, to: &ShadowPoint) -> bool {
         match self.is_left_rounded(from, to) {

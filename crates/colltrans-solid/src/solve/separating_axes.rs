@@ -6,8 +6,8 @@
 //!   All boxes of one body have the same axes. Therefore the extent of a node along each normal is computed once, and a
 //!   pair of nodes needs fifteen sums. The 16th normal is the direction.
 //! - Shadows of boxes are disjoint if they are disjoint across the shadow of one of the six axes, `n.d = 0`
-//!   (Gottschalk, Lin and Manocha, "A hierarchical structure for rapid interference detection", SIGGRAPH 1996, for
-//!   boxes that do not move).
+//!   (Gottschalk, Lin and Manocha, "`OBBTree`: a hierarchical structure for rapid interference detection", SIGGRAPH
+//!   1996, for boxes that do not move).
 //! - Cuts make a node smaller than its box. Its extent is measured along `n` for the moving body and along `-n` for the
 //!   fixed one. A negative sum of both proves a separation by its absolute value. Rounding:
 //!   `docs/theory/solid-rounding.md`.

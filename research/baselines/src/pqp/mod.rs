@@ -1,5 +1,6 @@
 //! PQP: distance, tolerance and intersection queries between triangle soups. Larsen, Gottschalk, Lin, Manocha, "Fast
-//! Proximity Queries with Swept Sphere Volumes" (UNC TR99-018, 1999; ICRA 2000).
+//! proximity queries with swept sphere volumes", UNC TR99-018, 1999 (ICRA 2000: "Fast distance queries with rectangular
+//! swept sphere volumes").
 //!
 //! Each soup has a tree of bounding volumes. *Rectangle swept spheres* yield lower bounds of distances, *oriented
 //! boxes* exclude contacts. A query descends both trees at once and compares triangles at the leaves. Modules:

@@ -1,8 +1,9 @@
 //! Oriented boxes.
 //!
 //! Two boxes are disjoint exactly if one of 15 axes separates them: three axes of each box and their nine
-//! cross products (Gottschalk, Lin, Manocha, "`OBBTree`", SIGGRAPH 1996). `A` has half sides `a_i` along the
-//! axes of its frame. In that frame, `B` has centre `t`, half sides `b_j` and axes `r_j`.
+//! cross products (Gottschalk, Lin, Manocha, "`OBBTree`: a hierarchical structure for rapid interference detection",
+//! SIGGRAPH 1996). `A` has half sides `a_i` along the axes of its frame. In that frame, `B` has centre `t`, half sides
+//! `b_j` and axes `r_j`.
 
 use glam::{DMat3, DVec3};
 

@@ -1,5 +1,5 @@
 //! Penetration depth: the shortest translation that separates two bodies, over all directions (expanding polytope
-//! algorithm of van den Bergen). Derivations: `docs/theory/distance.md`.
+//! algorithm, van den Bergen 2001). Derivations: `docs/theory/distance.md`.
 //!
 //! A polytope of points of `M` grows at its face nearest to the origin. The support point beyond this face joins the
 //! polytope, with a fan of triangles to the horizon of the faces that have this point in front. The *height* of a

@@ -1,9 +1,9 @@
 """Builds the whole site without a network: ``python site/build.py OUT``.
 
 The parts are pages of text by Sphinx (the Markdown of the repository, the reference of Python, the
-help of the command line, the JSON schema), notebooks and the gallery, whose cells and programs are
-executed, the documentation of Rust, the interactive page, and a report of the laboratory. At the
-end every link is followed (``links.py``).
+help of the command line, the JSON schema, the measurements), notebooks and the gallery, whose cells
+and programs are executed, the documentation of Rust, the interactive page, and a report of the
+laboratory. At the end every link is followed (``links.py``).
 
 Needs Rust, Python with ``pip install './python[docs]'``, and for the page Node, after ``npm ci`` in
 ``web/``. ``--without page`` omits the page; the site then states this.
@@ -23,6 +23,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 import links
+import measurements
 import nbformat
 import outputs
 import schema
@@ -57,6 +58,14 @@ TEXTS = {
     "MIGRATION.md": "migration.md",
 }
 KINDS = (".md", ".svg", ".ipynb", ".json")
+#: Pages that are generated, by what stands for them in the repository.
+GENERATED = {
+    "docs/measurements": "docs/measurements.md",
+    "docs/measurements/README.md": "docs/measurements.md",
+    "docs/answers.schema.json": "docs/reference/json.md",
+}
+#: Stands in ``docs/laboratory.md`` for the table of claims.
+CLAIMS = "<!-- claims -->\n"
 
 
 def run(*words: str | Path, **choices: Any) -> str:
@@ -71,16 +80,19 @@ def run(*words: str | Path, **choices: Any) -> str:
 
 def gather(source: Path) -> None:
     """Copies all texts to their places, with links between places on the site."""
-    places = dict(_files())
-    for file, place in places.items():
+    copied = dict(_files())
+    places = copied | GENERATED
+    for file, place in copied.items():
         target = source / place
         target.parent.mkdir(parents=True, exist_ok=True)
         # Texts of the folder site already link to places.
         if file.endswith(".md") and not file.startswith("site/"):
             text = (ROOT / file).read_text()
+            text = text.replace(CLAIMS, measurements.claims()) if CLAIMS in text else text
             target.write_text(relinked(text, PurePosixPath(file), places))
         else:
             shutil.copy(ROOT / file, target)
+    (source / "docs/measurements.md").write_text(measurements.page())
 
 
 def _files() -> list[tuple[str, str]]:

@@ -21,6 +21,41 @@ def test_every_public_name_is_in_the_reference() -> None:
     assert sorted(told) == sorted(colltrans.__all__)
 
 
+@pytest.fixture
+def measurements(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    monkeypatch.syspath_prepend(str(SITE))
+    return importlib.import_module("measurements")
+
+
+def test_the_page_of_measurements_has_every_run(measurements: ModuleType) -> None:
+    page = measurements.page()
+    runs = measurements.newest_runs()
+    for kind, file in runs.items():
+        if file.suffix == ".txt":
+            assert f"## {kind.replace('-', ' ').capitalize()}\n\n`{file.name}`\n" in page
+        elif not kind.startswith("laboratory"):
+            assert json.loads(file.read_text())["versions"] in page, kind
+    for line in page.splitlines():
+        assert not line.startswith("| ") or "nan" not in line.lower(), line
+    # A command is printed without the folders of the original machine.
+    assert "--bin table -- --quick --json 2026-11-27-table.json" in page
+
+
+def test_the_table_of_claims_has_every_claim(measurements: ModuleType) -> None:
+    run, again = measurements.laboratory()
+    text = measurements.claims()
+    for claim in run["claims"]:
+        assert f" (`{claim['id']}`) | {claim['paper']}; {claim['place']} | " in text, claim
+        assert not claim["why"] or f"\n- `{claim['id']}`, {claim['reason']}: " in text, claim
+    other = measurements.by_name(again)
+    differ = sum(claim["verdict"] != other[claim["id"]]["verdict"] for claim in run["claims"])
+    assert text.count("(again: ") == differ
+    page = (ROOT / "docs/laboratory.md").read_text()
+    assert measurements.counts(run) in page
+    assert "\n<!-- claims -->\n" in page
+    assert [measurements.rounded(x) for x in (0.333, 12.34, 4321.0)] == ["0.33", "12.3", "4,321"]
+
+
 def test_every_page_is_in_the_table_of_contents() -> None:
     index = (SITE / "index.md").read_text()
     docs = (page.relative_to(ROOT) for page in (ROOT / "docs").rglob("*.md"))

@@ -1,11 +1,13 @@
 """Sets the dated runs in ``docs/measurements`` as a page, and the laboratory's claims as a table.
 
 ``python site/measurements.py`` prints the page in Markdown, ``--claims`` the table. The runs are
-the JSON files of ``table``, ``paper``, ``coherence``, ``bulk`` and ``solids``, and the output
-of ``campaign``, named ``YYYY-MM-DD-KIND.json`` or ``.txt``. Of each kind the newest run is used.
-The claims come from ``claims.json`` of two runs of the laboratory with different seeds.
+the JSON files of ``table``, ``paper``, ``coherence``, ``bulk`` and ``solids``, tables of other
+programs (``.csv``), and the output of ``campaign`` (``.txt``). They are named by date and kind,
+``YYYY-MM-DD-KIND.json``; of each kind the newest run is used. The claims come from ``claims.json``
+of two runs of the laboratory with different seeds.
 """
 
+import csv
 import json
 import sys
 from collections.abc import Callable, Iterable
@@ -23,7 +25,7 @@ Row = dict[str, Any]
 
 def newest_runs(folder: Path = FOLDER) -> dict[str, Path]:
     """Returns the newest file of each kind, the name without date and extension."""
-    files = sorted(file for file in folder.iterdir() if file.suffix in (".json", ".txt"))
+    files = sorted(file for file in folder.iterdir() if file.suffix in (".json", ".txt", ".csv"))
     found = {file.stem[11:]: file for file in files}
     return dict(sorted(found.items()))
 
@@ -31,21 +33,29 @@ def newest_runs(folder: Path = FOLDER) -> dict[str, Path]:
 def page(folder: Path = FOLDER) -> str:
     """Returns the page with all measurements and campaigns: the template, then the campaigns."""
     runs = newest_runs(folder)
-    read = {kind: json.loads(file.read_text()) for kind, file in runs.items() if is_json(file)}
+    read = {
+        kind: json.loads(file.read_text()) for kind, file in runs.items() if file.suffix == ".json"
+    }
     used = {kind: read[kind] for kind in ("table", "paper", "coherence", "bulk", "solids")}
     parts = {kind: provenance(run) for kind, run in used.items()}
     parts |= table_run(used["table"]) | algorithm(used["paper"]) | coherence(used["coherence"])
     parts |= {"many": bulk(used["bulk"])} | solids(used["solids"])
+    for kind, file in runs.items():
+        if file.suffix == ".csv":
+            parts[kind.replace("-", "_")] = csv_table(file)
     text = TEMPLATE.read_text().format(**{name: part.strip() for name, part in parts.items()})
     for kind, file in runs.items():
-        if not is_json(file):
+        if file.suffix == ".txt":
             title = kind.replace("-", " ").capitalize()
             text += f"\n## {title}\n\n`{file.name}`\n\n```text\n{file.read_text().rstrip()}\n```\n"
     return text
 
 
-def is_json(file: Path) -> bool:
-    return file.suffix == ".json"
+def csv_table(file: Path) -> str:
+    """Returns a file of comma-separated values as a table."""
+    with file.open(newline="") as lines:
+        head, *rows = csv.reader(lines)
+    return "".join(f"| {' | '.join(line)} |\n" for line in [head, ["---"] * len(head), *rows])
 
 
 def figure(row: Any, path: str) -> Any:

@@ -33,10 +33,12 @@ def test_the_page_of_measurements_has_every_run(measurements: ModuleType) -> Non
     for kind, file in runs.items():
         if file.suffix == ".txt":
             assert f"## {kind.replace('-', ' ').capitalize()}\n\n`{file.name}`\n" in page
+        elif file.suffix == ".csv":
+            assert measurements.csv_table(file) in page
         elif not kind.startswith("laboratory"):
             assert json.loads(file.read_text())["versions"] in page, kind
     for line in page.splitlines():
-        assert not line.startswith("| ") or "nan" not in line.lower(), line
+        assert not line.startswith("| ") or not re.search(r"\bnan\b", line, re.IGNORECASE), line
     # A command is printed without the folders of the original machine.
     assert "--bin table -- --quick --json 2026-11-27-table.json" in page
 

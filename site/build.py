@@ -332,6 +332,8 @@ def main() -> None:
     source = work / "source"
     source.mkdir(parents=True)
     program = TARGET / "release" / "colltrans"
+    # The style of pictures, for notebooks and programs of the gallery.
+    os.environ["MATPLOTLIBRC"] = str(HERE / "matplotlibrc")
 
     def part(name: str, make: Callable[[], object]) -> None:
         began = time.monotonic()

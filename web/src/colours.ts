@@ -1,5 +1,6 @@
-// Colours that people with any colour vision can distinguish: blue and sand for the bodies, as in the project's
-// pictures. Orange, green and magenta differ from these and from each other in lightness too.
+// Colours that people with any colour vision can distinguish: blue and sand for the bodies, as in all pictures
+// (`crates/colltrans-picture/src/style.rs`). Orange, green and magenta differ from these and from each other in
+// lightness too.
 
 export interface Palette {
   dark: boolean;

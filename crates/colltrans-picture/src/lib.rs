@@ -8,14 +8,18 @@ mod edges;
 mod grid;
 mod order;
 mod page;
-mod paint;
 mod raster;
+mod style;
 mod view;
 
 pub use edges::{Edge, edges};
 pub use grid::Depth;
 pub use order::{Facet, sort_back_to_front};
 pub use page::{Frame, Page, Stroke, escape_xml};
-pub use paint::{FIXED, FIXED_MARK, MOVING, MOVING_MARK, Paint, SHADES, SMOOTH_COSINE};
 pub use raster::Raster;
+pub use style::{
+    ARROW_WIDTH, CONTACT, EDGE_WIDTH, FINE_WIDTH, FIXED, FIXED_MARK, FONT, GUIDE_WIDTH, HAIR_WIDTH,
+    INK, MARK_WIDTH, MOVING, MOVING_MARK, OUTLINE_WIDTH, PLANE, Paint, QUIET, SHADES,
+    SMOOTH_COSINE,
+};
 pub use view::View;

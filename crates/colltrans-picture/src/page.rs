@@ -7,6 +7,8 @@ use std::fmt::Write as _;
 
 use glam::DVec2;
 
+use crate::style::FONT;
+
 /// Colour, width and dashes of a line.
 #[derive(Debug, Clone, Copy)]
 pub struct Stroke {
@@ -269,7 +271,7 @@ impl Page {
         let ground = format!(r#"<rect width="100%" height="100%" fill="{ground}"/>"#);
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\"{extent} viewBox=\"0 0 {width} {height}\" \
-             stroke-linecap=\"round\" stroke-linejoin=\"round\">\n{ground}\n{}</svg>\n",
+             font-family=\"{FONT}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n{ground}\n{}</svg>\n",
             self.body
         )
     }
@@ -280,7 +282,7 @@ impl Page {
         let mut text = String::new();
         let _ = writeln!(
             text,
-            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="Helvetica, Arial, 'Liberation Sans', sans-serif" stroke-linecap="round" stroke-linejoin="round">"#
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="{FONT}" stroke-linecap="round" stroke-linejoin="round">"#
         );
         let _ = writeln!(text, "<title>{}</title>", escape_xml(title));
         let mut clip = Self::new(window);

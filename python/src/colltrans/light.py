@@ -29,7 +29,6 @@ WIDTH, HEIGHT, MARGIN = 320, 240, 8
 #: Directions from the scene to the eye and to the light.
 EYE = np.array([0.48, -0.72, 0.5])
 LIGHT = np.array([0.35, -0.5, 0.79])
-WORDS = 'font-family="sans-serif" font-size="11"'
 
 
 @dataclass(frozen=True)

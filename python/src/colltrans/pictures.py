@@ -49,8 +49,9 @@ from colltrans.assembly import Assembly, Plan
 from colltrans.errors import InputError
 
 Floats: TypeAlias = NDArray[np.float64]
-# The colours of the page (`web/src/colours.ts`): blue and sand, and red for contact points and
-# normals.
+# The style of all pictures (`crates/colltrans-picture/src/style.rs`, which names the other places):
+# blue and sand for bodies, magenta for contact points and normals.
+FONT = "Helvetica, Arial, 'Liberation Sans', sans-serif"
 MOVING, FIXED, TOUCH, EDGE = "#6f97d6", "#d9cbb0", "#b01657", "#1d2733"
 
 
@@ -123,6 +124,7 @@ def picture(answer: Any) -> Any:
     figure.update_layout(
         title=repr(answer),
         scene={"aspectmode": "data", **axes},
+        font={"family": FONT, "color": EDGE},
         legend={"itemsizing": "constant"},
         margin={"l": 0, "r": 0, "t": 40, "b": 0},
     )

@@ -26,6 +26,7 @@ mod shadow;
 pub mod shapes;
 mod solvers;
 pub mod statistics;
+mod style;
 
 use finding::Finding;
 use plan::{Plan, Progress};

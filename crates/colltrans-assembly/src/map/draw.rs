@@ -6,7 +6,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
 
-use colltrans_picture::escape_xml;
+use colltrans_picture::{FINE_WIDTH, FONT, INK, QUIET, escape_xml};
 use glam::{DVec2, DVec3};
 
 use super::outline::{arc_lines, is_inside, polygon_outlines};
@@ -189,9 +189,9 @@ const MIDDLE: DVec2 = DVec2::new(360.0, 190.0);
 
 /// Renders the map as an SVG picture with axes, marks and a legend.
 pub fn render_svg(map: &RemovalMap, title: &str) -> String {
-    let mut text = String::from(
+    let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 -14 720 470\" \
-         font-family=\"sans-serif\" font-size=\"13\">\n<rect y=\"-14\" width=\"720\" height=\"470\" \
+         font-family=\"{FONT}\" fill=\"{INK}\" font-size=\"13\">\n<rect y=\"-14\" width=\"720\" height=\"470\" \
          fill=\"#fff\"/>\n",
     );
     for (class, path) in
@@ -204,7 +204,7 @@ pub fn render_svg(map: &RemovalMap, title: &str) -> String {
     }
     let _ = writeln!(
         text,
-        "<ellipse cx=\"{}\" cy=\"{}\" rx=\"{}\" ry=\"{SCALE}\" fill=\"none\" stroke=\"#333\"/>",
+        "<ellipse cx=\"{}\" cy=\"{}\" rx=\"{}\" ry=\"{SCALE}\" fill=\"none\" stroke=\"{INK}\"/>",
         MIDDLE.x,
         MIDDLE.y,
         2.0 * SCALE
@@ -216,7 +216,7 @@ pub fn render_svg(map: &RemovalMap, title: &str) -> String {
     for at in &dots {
         let _ = writeln!(
             text,
-            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"#fff\" stroke=\"#111\" \
+            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"#fff\" stroke=\"{INK}\" \
              stroke-width=\"2\"/>",
             at.x, at.y
         );
@@ -284,7 +284,7 @@ fn draw_cover(text: &mut String, cover: &Cover) {
         .map(|region| cross(picture_position(map_position(region.center))))
         .collect();
     if !centers.is_empty() {
-        let _ = writeln!(text, "<path fill=\"none\" stroke=\"#111\" d=\"{centers}\"/>");
+        let _ = writeln!(text, "<path fill=\"none\" stroke=\"{INK}\" d=\"{centers}\"/>");
     }
 }
 
@@ -348,8 +348,8 @@ fn draw_graticule(text: &mut String) {
     }
     let _ = writeln!(
         text,
-        "<path d=\"{path}\" fill=\"none\" stroke=\"#888\" stroke-opacity=\"0.45\" \
-         stroke-width=\"0.6\"/>"
+        "<path d=\"{path}\" fill=\"none\" stroke=\"{QUIET}\" stroke-opacity=\"0.45\" \
+         stroke-width=\"{FINE_WIDTH}\"/>"
     );
 }
 
@@ -367,7 +367,7 @@ fn draw_axis_names(text: &mut String, dots: &[DVec2]) {
         let at = if hidden { at + DVec2::Y * 16.0 } else { at };
         let _ = writeln!(
             text,
-            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"#111\" stroke=\"#fff\" \
+            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"{INK}\" stroke=\"#fff\" \
              stroke-width=\"3\" paint-order=\"stroke\">{name}</text>",
             at.x,
             at.y + 4.0
@@ -386,8 +386,8 @@ fn draw_legend(text: &mut String, map: &RemovalMap) {
     let mut entry = |class: usize, name: &str, width: f64| {
         let _ = writeln!(
             text,
-            "<rect x=\"{x}\" y=\"388\" width=\"22\" height=\"14\" fill=\"{}\" stroke=\"#333\" \
-             stroke-width=\"0.5\"/><text x=\"{x}\" y=\"418\" font-size=\"11\">{name}</text>",
+            "<rect x=\"{x}\" y=\"388\" width=\"22\" height=\"14\" fill=\"{}\" stroke=\"{INK}\" \
+             stroke-width=\"{FINE_WIDTH}\"/><text x=\"{x}\" y=\"418\" font-size=\"11\">{name}</text>",
             hex_color(class_color(class))
         );
         x += width;
@@ -421,7 +421,7 @@ fn draw_legend(text: &mut String, map: &RemovalMap) {
     let marks: Vec<&str> = marks.into_iter().filter(|mark| mark.0).map(|mark| mark.1).collect();
     let _ = writeln!(
         text,
-        "<g font-size=\"11\" fill=\"#555\"><text x=\"40\" y=\"434\">blocked after, from</text>\n\
+        "<g font-size=\"11\" fill=\"{QUIET}\"><text x=\"40\" y=\"434\">blocked after, from</text>\n\
          <g text-anchor=\"end\"><text x=\"680\" y=\"434\">{summary}</text>\n\
          <text x=\"680\" y=\"449\">{}</text></g></g>",
         marks.join(". ")

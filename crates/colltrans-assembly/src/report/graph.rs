@@ -4,6 +4,7 @@
 
 use std::fmt::Write;
 
+use colltrans_picture::{CONTACT, FINE_WIDTH, FONT, INK, QUIET};
 use glam::DVec2;
 
 use super::escape_xml;
@@ -25,9 +26,9 @@ pub fn blocking_graph_svg(bodies: &Bodies, graph: &BlockingGraph) -> String {
         let height = height.clamp(-1.0, 1.0);
         MIDDLE + DVec2::new(side * (1.0 - height * height).sqrt().max(0.3), height) * RADIUS
     };
-    let mut text = String::from(
+    let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 560 400\" \
-         font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"560\" height=\"400\" \
+         font-family=\"{FONT}\" fill=\"{INK}\" font-size=\"12\">\n<rect width=\"560\" height=\"400\" \
          fill=\"#fff\"/>\n",
     );
     let groups = graph.strong_components();
@@ -45,13 +46,13 @@ pub fn blocking_graph_svg(bodies: &Bodies, graph: &BlockingGraph) -> String {
             let (p, q) = (p + along * 6.0, q - along * 7.0);
             let bend = (p + q) * 0.5 + (MIDDLE - (p + q) * 0.5) * 0.25;
             let inside = group_of[a] != usize::MAX && group_of[a] == group_of[b];
-            let color = if inside { "#c02020" } else { "#999" };
+            let color = if inside { CONTACT } else { QUIET };
             let tip = (q - bend).normalize_or_zero();
             let (l, r) = (q - tip * 6.0 + tip.perp() * 2.2, q - tip * 6.0 - tip.perp() * 2.2);
             let _ = writeln!(
                 text,
                 "<path d=\"M{:.1} {:.1}Q{:.1} {:.1} {:.1} {:.1}\" fill=\"none\" stroke=\"{color}\" \
-                 stroke-width=\"0.7\" stroke-opacity=\"0.7\"/><path d=\"M{:.1} {:.1}L{:.1} \
+                 stroke-width=\"{FINE_WIDTH}\" stroke-opacity=\"0.7\"/><path d=\"M{:.1} {:.1}L{:.1} \
                  {:.1}L{:.1} {:.1}z\" fill=\"{color}\"/>",
                 p.x, p.y, bend.x, bend.y, q.x, q.y, q.x, q.y, l.x, l.y, r.x, r.y
             );
@@ -67,7 +68,7 @@ pub fn blocking_graph_svg(bodies: &Bodies, graph: &BlockingGraph) -> String {
 /// Draws a part with its name.
 fn draw_node(text: &mut String, at: DVec2, name: &str, free: bool, group: usize) {
     let fill = if free { "#f6963a" } else { "#dde6f0" };
-    let stroke = if group == usize::MAX { "#333" } else { "#c02020" };
+    let stroke = if group == usize::MAX { INK } else { CONTACT };
     let right = at.x >= MIDDLE.x;
     let (anchor, x) = if right { ("start", at.x + 9.0) } else { ("end", at.x - 9.0) };
     let _ = writeln!(

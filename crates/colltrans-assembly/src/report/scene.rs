@@ -6,7 +6,9 @@
 
 use std::collections::BTreeMap;
 
-use colltrans_picture::{Frame, Page, Raster, Stroke, View};
+use colltrans_picture::{
+    CONTACT, EDGE_WIDTH, FINE_WIDTH, Frame, GUIDE_WIDTH, INK, Page, QUIET, Raster, Stroke, View,
+};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -95,8 +97,8 @@ const COARSE_SCALE: f64 = 0.25;
 const MIN_VISIBLE_SHARE: f64 = 0.5;
 /// Maximum number of parts that are made transparent, one in each round.
 const MAX_GLASS_ROUNDS: usize = 16;
-/// Colour of arrows.
-const ARROW: &str = "#c02020";
+/// Width of arrows, which are wider than in pictures of two bodies, in pixels.
+const REPORT_ARROW_WIDTH: f64 = 2.5;
 
 /// Views: azimuth and elevation in degrees, a penalty, and the name. The default view is the first one.
 const VIEWPOINTS: [(f64, f64, f64, &str); 9] = [
@@ -326,18 +328,19 @@ impl<'a> Studio<'a> {
         let mut page = Page::new(window);
         let traces = scene.traces.iter().map(|ends| ends.map(|p| projection.project(p)));
         let seen = traces.flat_map(|line| raster.split(line, DEPTH_TOLERANCE)[0].clone());
-        page.segments(Stroke::dashed("#7a8896", 0.9, "7 3 1.5 3"), seen);
+        page.segments(Stroke::dashed(QUIET, EDGE_WIDTH, "7 3 1.5 3"), seen);
         for look in [Look::Full, Look::Pale, Look::Moving] {
             self.draw_parts(&mut page, (scene, look), &raster, &projection);
         }
         self.draw_parts(&mut page, (scene, Look::Glass), &glass, &projection);
         for a in &scene.arrows {
             let [from, to] = [a.from, a.to].map(|p| projection.project(p).truncate());
-            page.arrow(ARROW, 2.5, [from, to]);
+            page.arrow(CONTACT, REPORT_ARROW_WIDTH, [from, to]);
         }
+        let look = format!(r#"font-size="18" font-weight="600" fill="{CONTACT}""#);
         for a in scene.arrows.iter().filter(|a| !a.label.is_empty()) {
             let ends = [a.from, a.to].map(|p| projection.project(p).truncate());
-            page.label(label_position(ends, &a.label, scene.size), LABEL, &a.label);
+            page.label(label_position(ends, &a.label, scene.size), &look, &a.label);
         }
         draw_numbers(&mut page, scene, &raster);
         let aside = if scene.numbers.is_empty() { 0.0 } else { 2.0 * NUMBER_INSET };
@@ -383,7 +386,7 @@ impl<'a> Studio<'a> {
             let lines = self.lines[s.part]
                 .visible_lines(self.parts[s.part].solid(), projection.view.toward);
             let colour = match look {
-                Look::Full | Look::Moving => "#222222",
+                Look::Full | Look::Moving => INK,
                 Look::Pale => "#9a9a9a",
                 Look::Glass => "#8fa0b4",
             };
@@ -391,7 +394,7 @@ impl<'a> Studio<'a> {
                 let [seen, _] = raster.split(line, DEPTH_TOLERANCE);
                 seen
             });
-            page.segments(Stroke::solid(colour, 0.7), seen);
+            page.segments(Stroke::solid(colour, FINE_WIDTH), seen);
             page.close_group();
         }
     }
@@ -409,10 +412,6 @@ impl<'a> Studio<'a> {
         self.colours[part]
     }
 }
-
-/// Style of the labels of arrows.
-const LABEL: &str =
-    r##"font-family="system-ui,sans-serif" font-size="18" font-weight="600" fill="#a01515""##;
 
 /// Width of a letter of a label in pixels.
 const LETTER_WIDTH: f64 = 10.8;
@@ -437,10 +436,11 @@ fn label_position([from, to]: [DVec2; 2], label: &str, size: DVec2) -> DVec2 {
 fn draw_axes(page: &mut Page, view: &View, origin: DVec2) {
     for (axis, name) in DVec3::AXES.into_iter().zip(["x", "y", "z"]) {
         let along = view.project(axis) * DVec2::new(1.0, -1.0);
-        page.lines(r##"stroke="#6b7785" stroke-width="1.2""##, [[origin, origin + along * 20.0]]);
-        let look = r##"font-family="system-ui,sans-serif" font-size="11" fill="#6b7785""##;
+        let line = format!(r#"stroke="{QUIET}" stroke-width="{GUIDE_WIDTH}""#);
+        page.lines(&line, [[origin, origin + along * 20.0]]);
+        let look = format!(r#"font-size="11" fill="{QUIET}""#);
         let at = origin + along * 20.0 + along.normalize_or_zero() * 7.0;
-        page.text(at + DVec2::new(0.0, 4.0), "middle", look, name);
+        page.text(at + DVec2::new(0.0, 4.0), "middle", &look, name);
     }
 }
 
@@ -489,12 +489,12 @@ fn draw_number_column(page: &mut Page, mut column: Vec<(usize, DVec2)>, x: f64, 
         let below = (column.len() - k) as f64 * pitch;
         y = anchor.y.max(y + pitch).max(0.5 * pitch).min(height - below + 0.5 * pitch);
         let at = DVec2::new(x, y);
-        page.lines(r##"stroke="#445" stroke-width="0.7""##, [[at, *anchor]]);
-        page.dot(*anchor, 1.8, "#334", "#ffffff");
-        page.dot(at, radius, "#ffffff", "#334");
+        let line = format!(r#"stroke="{QUIET}" stroke-width="{FINE_WIDTH}""#);
+        page.lines(&line, [[at, *anchor]]);
+        page.dot(*anchor, 1.8, INK, "#ffffff");
+        page.dot(at, radius, "#ffffff", INK);
         let size = if number > &99 { 0.95 } else { 1.15 } * radius;
-        let look =
-            format!(r##"font-family="system-ui,sans-serif" font-size="{size:.1}" fill="#112""##);
+        let look = format!(r#"font-size="{size:.1}" fill="{INK}""#);
         page.text(at + DVec2::new(0.0, 0.4 * size), "middle", &look, &number.to_string());
     }
 }

@@ -22,7 +22,7 @@ mod viewpoint;
 
 use colltrans::ContactRange;
 use colltrans::glam::{DVec2, DVec3};
-use colltrans_picture::{FIXED, FIXED_MARK, MOVING, MOVING_MARK, Page, View};
+use colltrans_picture::{FINE_WIDTH, FIXED, FIXED_MARK, MOVING, MOVING_MARK, PLANE, Page, View};
 
 use crate::solid::placed_surface;
 use layout::Layout;
@@ -182,9 +182,10 @@ impl PictureBodies {
         };
         let draw_plane = |page: &mut Page| {
             if let Some(plane) = subject.plane_corners(self) {
-                let style =
-                    r##"fill="#f0b429" fill-opacity="0.28" stroke="#a87600" stroke-width="0.8""##;
-                page.polygons(style, [plane.map(on_page).to_vec()]);
+                let style = format!(
+                    r#"fill="{PLANE}" fill-opacity="0.28" stroke="{PLANE}" stroke-width="{FINE_WIDTH}""#
+                );
+                page.polygons(&style, [plane.map(on_page).to_vec()]);
             }
         };
         if fixed_is_nearer {

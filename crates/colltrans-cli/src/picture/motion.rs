@@ -5,7 +5,7 @@ use colltrans::Pose;
 use colltrans::glam::DVec3;
 use colltrans::motion::Motion;
 use colltrans::record::{Ending, FeaturesRecord, MotionRecord, TimeRecord};
-use colltrans_picture::{MOVING, Stroke};
+use colltrans_picture::{GUIDE_WIDTH, MOVING, Stroke};
 
 use super::parts::draw_with_depths;
 use super::solid::Solid;
@@ -58,7 +58,7 @@ pub(crate) fn draw_motion(picture: MotionPicture<'_>) -> String {
     draw_with_depths(&bodies, &subject, along, [&moving, &fixed_triangles], |page, eye| {
         let on_page = |p: &DVec3| eye.layout.on_page(eye.view.project(*p));
         let points: Vec<_> = path.iter().map(on_page).collect();
-        page.polyline(Stroke::dashed(MOVING.line, 1.1, "5 4"), &points);
+        page.polyline(Stroke::dashed(MOVING.line, GUIDE_WIDTH, "5 4"), &points);
     })
 }
 

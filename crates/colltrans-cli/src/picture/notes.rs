@@ -1,21 +1,20 @@
 //! Arrows, labels, legend and caption, drawn over the bodies.
 
 use colltrans::glam::{DVec2, DVec3};
-use colltrans_picture::{FIXED, FIXED_MARK, Frame, MOVING, MOVING_MARK, Page, Stroke, View};
+use colltrans_picture::{
+    ARROW_WIDTH, CONTACT, FINE_WIDTH, FIXED, FIXED_MARK, Frame, INK, MARK_WIDTH, MOVING,
+    MOVING_MARK, OUTLINE_WIDTH, PLANE, Page, QUIET, Stroke, View,
+};
 
 use super::PictureBodies;
 use super::layout::{LINE_HEIGHT, Layout};
 use super::solid::convex_outline;
 use super::subject::{Subject, short};
 
-/// Colour of translations and shortest ways.
-const WAY_COLOUR: &str = "#b3261e";
-/// Colour of normals and margins.
-const NORMAL_COLOUR: &str = "#14733f";
-/// Colour of labels.
-const TEXT_COLOUR: &str = "#222222";
-/// Style of labels.
-const LABEL_STYLE: &str = r##"font-size="14" font-style="italic" fill="#222222""##;
+/// Returns the style of labels of a colour.
+fn label_style(colour: &str) -> String {
+    format!(r#"font-size="14" font-style="italic" fill="{colour}""#)
+}
 
 /// Distance of the dimension line from the moving body, in pixels.
 const LINE_DISTANCE: f64 = 20.0;
@@ -98,22 +97,16 @@ impl Notes<'_> {
             line.feet = [at - DIRECTION_ARROW * along, at + DIRECTION_ARROW * along];
         }
         if !is_short && !is_hidden {
-            let thin = Stroke::solid("#777777", 0.6);
+            let thin = Stroke::solid(QUIET, FINE_WIDTH);
             page.segments(thin, line.feet.map(|f| [f + line.side * 4.0, f + line.side * 25.0]));
         }
         let ends = line.ends();
-        page.arrow(WAY_COLOUR, 2.0, ends);
+        page.arrow(INK, ARROW_WIDTH, ends);
         let middle = ends[0].midpoint(ends[1]);
         if self.bodies.is_broken && !is_hidden {
             draw_break(page, middle, along);
         }
-        self.draw_label(
-            page,
-            middle,
-            line.side,
-            &LABEL_STYLE.replace(TEXT_COLOUR, WAY_COLOUR),
-            label,
-        );
+        self.draw_label(page, middle, line.side, &label_style(INK), label);
     }
 
     /// Counts samples of a dimension line over the other body, and of the line and its label outside the window.
@@ -136,38 +129,32 @@ impl Notes<'_> {
         let Some(gap) = self.subject.margin_ends(self.bodies) else { return };
         let [from, to] = gap.map(|p| self.on_page(p));
         let across = (to - from).normalize_or(DVec2::Y).perp();
-        page.haloed(Stroke::solid(NORMAL_COLOUR, 1.8), [from, to]);
+        page.haloed(Stroke::solid(PLANE, ARROW_WIDTH), [from, to]);
         for end in [from, to] {
             page.haloed(
-                Stroke::solid(NORMAL_COLOUR, 1.4),
+                Stroke::solid(PLANE, OUTLINE_WIDTH),
                 [end - across * 5.0, end + across * 5.0],
             );
         }
         let label = format!("margin {}", short(self.subject.margin.unwrap_or_default()));
-        let look = LABEL_STYLE.replace(TEXT_COLOUR, NORMAL_COLOUR);
+        let look = label_style(PLANE);
         self.draw_label(page, from.midpoint(to), across, &look, &label);
     }
 
     /// Draws the shortest way between the bodies, or a common point.
     fn draw_shortest_way(&self, page: &mut Page) {
         if self.subject.meets {
-            page.dot(self.on_page(DVec3::ZERO), 4.0, WAY_COLOUR, "#ffffff");
+            page.dot(self.on_page(DVec3::ZERO), 4.0, CONTACT, "#ffffff");
         }
         let Some((ends, label)) = &self.subject.link else { return };
         let [from, to] = ends.map(|p| self.on_page(p));
-        page.haloed(Stroke::solid(WAY_COLOUR, 2.0), [from, to]);
+        page.haloed(Stroke::solid(CONTACT, ARROW_WIDTH), [from, to]);
         for end in [from, to] {
-            page.dot(end, 3.5, WAY_COLOUR, "#ffffff");
+            page.dot(end, 3.5, CONTACT, "#ffffff");
         }
         let aside = (to - from).normalize_or(DVec2::X).perp();
         let aside = if aside.y > 0.0 { -aside } else { aside };
-        self.draw_label(
-            page,
-            from.midpoint(to),
-            aside,
-            &LABEL_STYLE.replace(TEXT_COLOUR, WAY_COLOUR),
-            label,
-        );
+        self.draw_label(page, from.midpoint(to), aside, &label_style(CONTACT), label);
     }
 
     /// Draws the contact point and the normal.
@@ -180,11 +167,10 @@ impl Notes<'_> {
         let seen = self.view.project(self.subject.normal);
         let seen = DVec2::new(seen.x, -seen.y);
         let tip = at + seen.normalize_or(DVec2::NEG_Y) * (56.0 * seen.length()).max(24.0);
-        page.arrow(NORMAL_COLOUR, 2.2, [at, tip]);
-        page.dot(at, 4.0, WAY_COLOUR, "#ffffff");
+        page.arrow(CONTACT, MARK_WIDTH, [at, tip]);
+        page.dot(at, 4.0, CONTACT, "#ffffff");
         let aside = (tip - at).normalize_or(DVec2::NEG_Y);
-        let look =
-            format!(r#"{} font-weight="bold""#, LABEL_STYLE.replace(TEXT_COLOUR, NORMAL_COLOUR));
+        let look = format!(r#"{} font-weight="bold""#, label_style(CONTACT));
         self.draw_label(page, tip, aside, &look, "n");
     }
 
@@ -192,17 +178,17 @@ impl Notes<'_> {
     fn draw_caption(&self, page: &mut Page) {
         let left = 16.0;
         let mut y = self.layout.window.high.y + 16.0;
-        let headline_style = r##"font-size="15" font-weight="bold" fill="#222222""##;
-        page.text(DVec2::new(left, y), "start", headline_style, &self.subject.headline);
-        let small = r##"font-size="12" fill="#222222""##;
+        let headline = format!(r#"font-size="15" font-weight="bold" fill="{INK}""#);
+        page.text(DVec2::new(left, y), "start", &headline, &self.subject.headline);
+        let small = format!(r#"font-size="12" fill="{INK}""#);
         for detail in &self.subject.details {
             y += LINE_HEIGHT;
-            page.text(DVec2::new(left, y), "start", small, detail);
+            page.text(DVec2::new(left, y), "start", &small, detail);
         }
-        self.draw_legend(page, DVec2::new(left, y + 20.0), small);
+        self.draw_legend(page, DVec2::new(left, y + 20.0), &small);
         if self.bodies.is_broken {
             let right = DVec2::new(self.layout.size.x - left, self.layout.window.high.y + 16.0);
-            page.text(right, "end", small, "the translation is drawn shortened");
+            page.text(right, "end", &small, "the translation is drawn shortened");
         }
     }
 
@@ -234,7 +220,7 @@ impl Notes<'_> {
             entries.push(("#ffffff", FIXED_MARK, "contact feature, fixed"));
         }
         if margin.is_some() {
-            entries.push(("#fbe7bb", "#a87600", "separating plane"));
+            entries.push(("#bfdfd6", PLANE, "separating plane"));
         }
         let mut x = at.x;
         for (fill, rim, text) in entries {
@@ -278,7 +264,7 @@ fn draw_break(page: &mut Page, at: DVec2, along: DVec2) {
     page.segments(Stroke::solid("#ffffff", 5.0), [[at - along * 2.5, at + along * 2.5]]);
     for offset in [-3.5, 3.5] {
         let middle = at + along * offset;
-        page.segments(Stroke::solid(WAY_COLOUR, 1.4), [[middle - slant, middle + slant]]);
+        page.segments(Stroke::solid(INK, OUTLINE_WIDTH), [[middle - slant, middle + slant]]);
     }
 }
 

@@ -11,7 +11,8 @@ use std::path::Path;
 use colltrans::glam::{DVec2, DVec3};
 use colltrans::record::{Ending, FeaturesRecord, SolidClearanceRecord};
 use colltrans_picture::{
-    Edge, FIXED, MOVING, Page, Paint, Raster, SHADES, SMOOTH_COSINE, Stroke, View, edges,
+    EDGE_WIDTH, Edge, FINE_WIDTH, FIXED, MOVING, OUTLINE_WIDTH, Page, Paint, Raster, SHADES,
+    SMOOTH_COSINE, Stroke, View, edges,
 };
 
 use super::layout::Layout;
@@ -202,11 +203,11 @@ impl DepthView<'_> {
         let [creases, hidden] = split(&drawn.creases);
         let [outline, behind] = split(&drawn.outline);
         if drawn.outline.len() + drawn.creases.len() <= MAX_HIDDEN_EDGES {
-            let dashes = Stroke::dashed(paint.fine, 0.6, "2.5 3");
+            let dashes = Stroke::dashed(paint.fine, FINE_WIDTH, "2.5 3");
             page.segments(dashes, hidden.into_iter().chain(behind));
         }
-        page.segments(Stroke::solid(paint.line, 0.9), creases);
-        page.segments(Stroke::solid(paint.line, 1.5), outline);
+        page.segments(Stroke::solid(paint.line, EDGE_WIDTH), creases);
+        page.segments(Stroke::solid(paint.line, OUTLINE_WIDTH), outline);
     }
 
     /// Draws the moving part at another pose: translucent, and hidden by nearer bodies.
@@ -228,7 +229,7 @@ impl DepthView<'_> {
         page.open_group(r#"opacity="0.75""#);
         let tiles: Vec<[usize; 4]> = own.tiles().concat();
         page.tiles(r##"fill="#dce7f5" fill-opacity="0.55" stroke="none""##, &tiles);
-        page.segments(Stroke::solid(MOVING.fine, 0.7), lines);
+        page.segments(Stroke::solid(MOVING.fine, FINE_WIDTH), lines);
         page.close_group();
     }
 

@@ -5,7 +5,10 @@
 
 use colltrans::glam::{DVec2, DVec3};
 use colltrans::{Aabb, ConvexPolyhedron, Feature, Pose};
-use colltrans_picture::{Page, Paint, SHADES, SMOOTH_COSINE, Stroke, View};
+use colltrans_picture::{
+    EDGE_WIDTH, FINE_WIDTH, GUIDE_WIDTH, HAIR_WIDTH, MARK_WIDTH, OUTLINE_WIDTH, Page, Paint,
+    SHADES, SMOOTH_COSINE, Stroke, View,
+};
 
 /// A placed body, relative to the origin of the picture.
 #[derive(Debug, Clone)]
@@ -152,15 +155,15 @@ impl Solid {
             list.push(ends(edge));
         }
         if self.edges.len() <= MAX_HIDDEN_EDGES {
-            page.segments(Stroke::dashed(paint.fine, 0.7, "2.5 3"), hidden);
+            page.segments(Stroke::dashed(paint.fine, FINE_WIDTH, "2.5 3"), hidden);
         }
         if mean > MIN_EDGE_LENGTH {
-            page.segments(Stroke::solid(paint.fine, 0.45), smooth);
+            page.segments(Stroke::solid(paint.fine, HAIR_WIDTH), smooth);
         }
         if mean > 0.5 * MIN_EDGE_LENGTH {
-            page.segments(Stroke::solid(paint.line, 0.9), sharp);
+            page.segments(Stroke::solid(paint.line, EDGE_WIDTH), sharp);
         }
-        page.segments(Stroke::solid(paint.line, 1.6), outline);
+        page.segments(Stroke::solid(paint.line, OUTLINE_WIDTH), outline);
     }
 
     /// Checks whether the normals of two faces differ by more than a smooth edge permits.
@@ -193,9 +196,9 @@ impl Solid {
             page.polygons(r##"fill="#dce7f5" fill-opacity="0.55" stroke="none""##, [shape]);
             let ends = |&([a, b], _): &([u32; 2], _)| [points[a as usize], points[b as usize]];
             if self.edges.len() <= 10 * MAX_HIDDEN_EDGES {
-                page.segments(Stroke::solid(paint.fine, 0.6), inner.iter().map(ends));
+                page.segments(Stroke::solid(paint.fine, FINE_WIDTH), inner.iter().map(ends));
             }
-            page.segments(Stroke::solid(paint.line, 0.9), outline.iter().map(ends));
+            page.segments(Stroke::solid(paint.line, EDGE_WIDTH), outline.iter().map(ends));
         }
         page.close_group();
     }
@@ -216,7 +219,7 @@ impl Solid {
             lines if lines.is_empty() => {
                 page.dot(on_page(self.first_vertex(feature)), 3.4, colour, "#ffffff");
             }
-            lines => page.segments(Stroke::solid(colour, 2.2), lines),
+            lines => page.segments(Stroke::solid(colour, MARK_WIDTH), lines),
         }
     }
 
@@ -232,7 +235,7 @@ impl Solid {
             lines if lines.is_empty() => {
                 page.dot(on_page(self.first_vertex(feature)), 3.0, "none", colour);
             }
-            lines => page.segments(Stroke::dashed(colour, 1.1, "4 3"), lines),
+            lines => page.segments(Stroke::dashed(colour, GUIDE_WIDTH, "4 3"), lines),
         }
     }
 

@@ -11,7 +11,7 @@ use super::scene::{Area, Line, Scene, Segment, Styles};
 
 /// Width of the stroke around an opaque area, in pixels, so that no gaps show between neighbouring areas.
 const RIM: f64 = 0.7;
-const WORDS: &str = r#"font-family="sans-serif" font-size="14" font-style="italic""#;
+const WORDS: &str = r#"font-size="14" font-style="italic""#;
 
 /// Draws a scene and returns the text of the SVG file.
 pub(crate) fn draw_scene(scene: &Scene) -> String {

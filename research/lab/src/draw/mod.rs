@@ -18,6 +18,7 @@ use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 
 use crate::finding::{Axis, Figure};
+use crate::style::{CURVE_WIDTH, CURVES, FONT, GREYS, GRID};
 use curve::{Curve, Spread};
 
 /// A drawn figure.
@@ -44,9 +45,6 @@ const LEFT: f64 = 64.0;
 /// Pixels of the PNG for each pixel of the SVG.
 const PNG_SCALE: f32 = 2.0;
 
-/// Colours that are distinct for any colour vision (Okabe and Ito).
-const COLOURS: [&str; 7] =
-    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7a5195", "#e69f00", "#56b4e9"];
 /// Shapes of marks.
 const SHAPES: [MarkerShape; 7] = [
     MarkerShape::Circle,
@@ -57,10 +55,6 @@ const SHAPES: [MarkerShape; 7] = [
     MarkerShape::Pentagon,
     MarkerShape::Star,
 ];
-/// Greys and dashes of curves for comparison. In the PNG the unit of dashes is a pixel, so that short dashes
-/// would merge.
-const GREYS: [(&str, &str); 4] =
-    [("#444444", "10 6"), ("#888888", "3 5"), ("#666666", "9 4 2 4"), ("#aaaaaa", "16 4")];
 
 /// Draws a figure.
 ///
@@ -138,7 +132,7 @@ fn aside(figure: &Figure, x: (f64, f64), k: usize, count: usize) -> impl Fn(f64)
 
 /// Iterates over pairs of colours and shapes.
 fn curve_styles() -> impl Iterator<Item = (&'static &'static str, &'static MarkerShape)> {
-    COLOURS.iter().zip(&SHAPES).cycle()
+    CURVES.iter().zip(&SHAPES).cycle()
 }
 
 /// Returns a line plot.
@@ -193,7 +187,7 @@ fn add_measured(
         if is_dense && stretch.len() > 1 {
             let x = points().map(|(x, _)| x);
             plots.push(BandPlot::new(x, low, high).with_color(colour).with_opacity(0.2).into());
-            plots.push(line_plot(points(), colour, 1.5).into());
+            plots.push(line_plot(points(), colour, CURVE_WIDTH).into());
             continue;
         }
         let dots = ScatterPlot::new().with_data(points()).with_color(colour).with_marker(shape);
@@ -201,7 +195,7 @@ fn add_measured(
         for ((dot, low), high) in dots.data.iter_mut().zip(low).zip(high) {
             dot.y_err = (low < high).then_some((dot.y - low, high - dot.y));
         }
-        plots.push(line_plot(points(), colour, 1.5).into());
+        plots.push(line_plot(points(), colour, CURVE_WIDTH).into());
         plots.push(dots.into());
     }
 }
@@ -211,6 +205,7 @@ fn plot_layout(figure: &Figure, x: (f64, f64), y: (f64, f64)) -> Layout {
     let ticks = || TickFormat::Custom(std::sync::Arc::new(axis::tick_label));
     let mut layout = Layout::new(x, y)
         .with_width(WIDTH)
+        .with_font_family(FONT)
         .with_height(HEIGHT)
         .with_title(without_formulas(&figure.title))
         .with_title_wrap(80)
@@ -231,7 +226,7 @@ fn plot_layout(figure: &Figure, x: (f64, f64), y: (f64, f64)) -> Layout {
     layout.force_margin_right = Some(34.0);
     layout.force_margin_top = Some(TOP);
     layout.force_margin_left = Some(LEFT);
-    layout.theme.grid_color = "#e4e4e4".into();
+    layout.theme.grid_color = GRID.into();
     layout
 }
 

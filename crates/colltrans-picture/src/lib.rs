@@ -2,7 +2,8 @@
 //!
 //! [`View`] projects the scene. A [`Raster`] of depths determines the visible surfaces, and the visible parts of the
 //! edges that [`edges()`] finds. [`sort_back_to_front`] sorts facets so that they can be painted back to front.
-//! [`Page`] writes areas, lines and text. [`Paint`] has the colours of the moving and of the fixed body.
+//! [`Page`] writes areas, lines and text. [`Paint`] has the colours of a body; the module `style` has those of both
+//! bodies, and the font, the other colours and the widths of lines of all pictures.
 
 mod edges;
 mod grid;

@@ -1,6 +1,36 @@
-//! Colours of bodies that are distinguishable with any colour vision: the moving body is blue, the fixed body
-//! sand. The page (`web/src/colours.ts`) and Python (`pictures.py`) use other shades of the same hues. The page has the
-//! same colours of marks.
+//! The style of all pictures: font, colours and widths of lines. The colours of bodies are distinguishable with
+//! any colour vision: the moving body is blue, the fixed body sand.
+//!
+//! The same style is in `research/lab/src/style.rs` and `figures/sheet.css` (laboratory),
+//! `python/src/colltrans/pictures.py` (Python), `site/matplotlibrc` (notebooks and gallery) and
+//! `web/src/colours.ts` (page).
+
+/// Fonts in order of preference.
+pub const FONT: &str = "Helvetica, Arial, 'Liberation Sans', sans-serif";
+
+/// The colour of text and of translations.
+pub const INK: &str = "#1d2733";
+/// The colour of leaders, axes and traces.
+pub const QUIET: &str = "#6b7785";
+/// The colour of contact points and normals, of shortest ways, and of arrows in reports of assemblies.
+pub const CONTACT: &str = "#b01657";
+/// The colour of separating planes and margins.
+pub const PLANE: &str = "#0a8a68";
+
+/// Width of lines inside smooth surfaces, in pixels.
+pub const HAIR_WIDTH: f64 = 0.45;
+/// Width of hidden lines and of leaders, in pixels.
+pub const FINE_WIDTH: f64 = 0.7;
+/// Width of sharp edges, in pixels.
+pub const EDGE_WIDTH: f64 = 0.9;
+/// Width of guides, which are dashed, and of axes, in pixels.
+pub const GUIDE_WIDTH: f64 = 1.1;
+/// Width of outlines of bodies, in pixels.
+pub const OUTLINE_WIDTH: f64 = 1.5;
+/// Width of arrows and measured lengths, in pixels.
+pub const ARROW_WIDTH: f64 = 2.0;
+/// Width of features in contact, in pixels.
+pub const MARK_WIDTH: f64 = 2.2;
 
 /// The colours of a body.
 #[derive(Debug, Clone, Copy)]

@@ -158,7 +158,8 @@ impl Cell {
             carried.map(|(frame, body)| PathBody { frame, placed: body.at(Pose::IDENTITY) });
         let scene = self.scene.iter().map(|body| PathBody::at_rest(body.at(Pose::IDENTITY)));
         let bodies = carried.chain(scene).collect();
-        PathCast::new(self.robot.mechanism(), path, bodies, self.pairs.clone())?.with_min_gap(min_gap)
+        PathCast::new(self.robot.mechanism(), path, bodies, self.pairs.clone())?
+            .with_min_gap(min_gap)
     }
 
     /// Returns the message of an error with the names of bodies and joints instead of their numbers.

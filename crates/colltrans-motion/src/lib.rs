@@ -78,12 +78,14 @@ use derive_where::derive_where;
 
 pub use self::answer::{HasProof, MotionContact, MotionFree, MotionOutcome, MotionSteps};
 pub use self::clearance::{MotionClearance, MotionOverlap, MotionStop};
-pub use self::proof::{ContactProof, MotionProof, ProvenContact, TimedPlane};
+pub use self::proof::{
+    ContactProof, FacetContact, FacetContactProof, MotionCover, MotionProof, ProvenContact,
+    SolidMotionProof, SpanProof, TimedPlane,
+};
 use self::sample::ConvexSampler;
 use self::search::{SpanEnd, SpanResult, prove_span};
 #[cfg(feature = "json")]
 pub use self::solid::ProofFacets;
-pub use self::solid::{FacetContact, FacetContactProof, MotionCover, SolidMotionProof, SpanProof};
 use self::span::{Span, split_into_spans};
 pub use self::verify::MotionProofError;
 pub use colltrans_convex::body::Moving;

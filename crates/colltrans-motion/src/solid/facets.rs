@@ -12,11 +12,11 @@ use glam::DVec3;
 
 use super::super::answer::MotionSteps;
 use super::super::curvature::VertexScan;
+use super::super::proof::FacetContactProof;
 use super::super::relative_motion::RelativeMotion;
 use super::super::sample::{Sample, Sampler, closing_speed};
 use super::super::search::{SpanEnd, SpanResult, prove_span};
 use super::super::span::{Instant, Span};
-use super::proof::FacetContactProof;
 use super::tree::Facet;
 use colltrans_convex::answer::are_weights;
 use colltrans_solid::solve::nearest::triangle::{self, Corners, GAP_NOISES, LENGTH_NOISES};

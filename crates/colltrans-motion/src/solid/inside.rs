@@ -11,7 +11,7 @@
 
 use glam::DVec3;
 
-use super::proof::FacetContactProof;
+use super::super::proof::FacetContactProof;
 use super::tree::SolidTree;
 use colltrans_convex::body::VertexHull;
 use colltrans_convex::setting::TwoBodies;

@@ -7,13 +7,13 @@
 //! it is inside is tested as well.
 
 use super::super::crossing_time::ContactState;
+use super::super::proof::{FacetContactProof, PlaneName};
 use super::super::sample::Sampler;
 use super::facets::{FacetSampler, placed_corners};
 use super::inside::{Contained, Guesses, find_contained_point};
-use super::proof::FacetContactProof;
 use super::search::{find_separating_plane, split_larger_node};
 use super::tree::NodeContent;
-use super::window::{PlaneName, SpanFrame, TreePart};
+use super::window::{SpanFrame, TreePart};
 
 /// Searches both trees for a proof that the solids meet at a time.
 pub(super) fn contact_state_at(

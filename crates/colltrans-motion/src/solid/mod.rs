@@ -6,14 +6,13 @@
 //! time.
 //!
 //! Each module uses only those before it: `tree` (a shrunk solid), `window` (one plane for two parts in an interval),
-//! `proof` (entries of a cover), `facets` (two facets as convex bodies), `inside` (a point inside both solids).
-//! `search`, `meeting` (proves contact at a time), `verify` and `clearance` use them.
+//! `facets` (two facets as convex bodies), `inside` (a point inside both solids). `search`, `meeting` (proves contact
+//! at a time), `verify` and `clearance` use them.
 
 mod clearance;
 mod facets;
 pub(super) mod inside;
 mod meeting;
-mod proof;
 mod search;
 mod tree;
 mod verify;
@@ -23,8 +22,6 @@ use glam::DVec3;
 
 use self::facets::FacetSampler;
 use self::meeting::contact_state_at;
-use self::proof::RecordedProof;
-pub use self::proof::{FacetContact, FacetContactProof, MotionCover, SolidMotionProof, SpanProof};
 use self::search::{EarliestContact, SearchMode, TreeSearch};
 #[cfg(feature = "json")]
 pub use self::tree::ProofFacets;
@@ -32,6 +29,7 @@ use self::tree::SolidTree;
 use self::window::SpanFrame;
 use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps};
 use super::crossing_time::find_crossing_time;
+use super::proof::{FacetContact, RecordedProof, SolidMotionProof, SpanProof};
 use super::span::{Span, split_into_spans};
 use super::verify::MotionProofError;
 use super::{MotionCast, Moving, check_accuracy, default_tolerance};

@@ -8,11 +8,11 @@
 //! except for the open entries. Later times are not searched.
 
 use super::super::answer::MotionSteps;
+use super::super::proof::{Entry, FacetContactProof, PlaneName, RecordedProof, interval_middle};
 use super::super::search::{SpanEnd, SpanResult, prove_span};
 use super::facets::{FacetSampler, LaterContact, find_later_contact};
-use super::proof::{Entry, FacetContactProof, RecordedProof, interval_middle};
 use super::tree::{BoxNode, NodeContent, SolidTree};
-use super::window::{PlaneName, Snapshot, SpanFrame, TreePart, Window};
+use super::window::{Snapshot, SpanFrame, TreePart, Window};
 use colltrans_kernel::descent::{node_to_split, pair_with_node};
 
 /// Angle in radians above which an interval is halved.

@@ -5,13 +5,13 @@
 
 use glam::DVec3;
 
+use super::super::proof::{
+    Entry, FacetContact, FacetContactProof, SolidMotionProof, SpanProof, interval_middle,
+};
 use super::super::span::{Span, split_into_spans};
 use super::super::verify::{MotionProofError, check_planes};
 use super::facets;
 use super::inside;
-use super::proof::{
-    Entry, FacetContact, FacetContactProof, SolidMotionProof, SpanProof, interval_middle,
-};
 use super::tree::{NodeContent, SolidTree};
 use super::window::{Snapshot, SpanFrame, TreePart};
 use crate::MotionCast;

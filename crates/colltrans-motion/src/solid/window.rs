@@ -13,6 +13,7 @@ use glam::{DMat3, DVec3};
 
 use super::super::arc;
 use super::super::curvature::{ROOT_MARGIN, max_provable_curvature, perpendicular_part};
+use super::super::proof::PlaneName;
 use super::super::span::Span;
 use super::tree::{BoxNode, Facet, NodeContent, SolidTree};
 use colltrans_convex::body::VertexHull;
@@ -55,19 +56,6 @@ pub(super) struct SpanFrame<'s, 'a> {
     /// Whether both bodies have the same angular velocity and axis, up to rounding. In the frame that rotates with
     /// them, one then only translates relative to the other.
     has_common_rotation: bool,
-}
-
-/// Name of a direction that two parts determine.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum PlaneName {
-    /// From the middle of the moving part to that of the fixed part.
-    Middles,
-    /// An axis (second index) of the frame of the moving (0) or the fixed (1) body.
-    Axis(u8, u8),
-    /// The normal of the moving (0) or the fixed (1) facet.
-    FacetNormal(u8),
-    /// Perpendicular to an edge of each facet, the moving one first.
-    Edges(u8, u8),
 }
 
 /// A part of a body, in the frame of the body.

@@ -4,8 +4,7 @@
 //! the whole span. The time or one of the parts is split, or the parts are separated throughout, by a named plane or by
 //! a list of planes. The complete list covers all pairs of facets at all times.
 
-use super::super::proof::TimedPlane;
-use super::window::PlaneName;
+use super::plane::TimedPlane;
 use colltrans_solid::cast::StartProof;
 
 /// Proof of an answer about solids in motion.
@@ -113,7 +112,7 @@ pub enum FacetContactProof {
     derive(serde::Serialize, serde::Deserialize),
     serde(into = "String", try_from = "String")
 )]
-pub struct MotionCover(pub(super) Vec<Entry>);
+pub struct MotionCover(pub(crate) Vec<Entry>);
 
 impl MotionCover {
     /// Returns the number of entries, splits included.
@@ -129,7 +128,7 @@ impl MotionCover {
 
 /// The treatment of a pair of parts in an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Entry {
+pub(crate) enum Entry {
     /// The interval is halved.
     Halved,
     /// The moving (0) or the fixed (1) part is split in two.
@@ -140,16 +139,29 @@ pub(super) enum Entry {
     PlaneList,
 }
 
+/// Name of a direction that two parts determine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PlaneName {
+    /// From the middle of the moving part to that of the fixed part.
+    Middles,
+    /// An axis (second index) of the frame of the moving (0) or the fixed (1) body.
+    Axis(u8, u8),
+    /// The normal of the moving (0) or the fixed (1) facet.
+    FacetNormal(u8),
+    /// Perpendicular to an edge of each facet, the moving one first.
+    Edges(u8, u8),
+}
+
 /// A recorded proof: entries in preorder, and the lists of planes that they refer to.
 #[derive(Debug, Clone, Default)]
-pub(super) struct RecordedProof {
-    pub(super) entries: Vec<Entry>,
-    pub(super) lists: Vec<Vec<TimedPlane>>,
+pub(crate) struct RecordedProof {
+    pub(crate) entries: Vec<Entry>,
+    pub(crate) lists: Vec<Vec<TimedPlane>>,
 }
 
 impl SpanProof {
     /// Builds the proof of a span from the recorded entries.
-    pub(super) fn new(until: f64, RecordedProof { entries, lists }: RecordedProof) -> Self {
+    pub(crate) fn new(until: f64, RecordedProof { entries, lists }: RecordedProof) -> Self {
         Self { until, cover: MotionCover(entries), lists }
     }
 }
@@ -208,6 +220,6 @@ impl TryFrom<String> for MotionCover {
 }
 
 /// Returns the time at which an interval is halved.
-pub(super) fn interval_middle(from: f64, to: f64) -> f64 {
+pub(crate) fn interval_middle(from: f64, to: f64) -> f64 {
     from + 0.5 * (to - from)
 }

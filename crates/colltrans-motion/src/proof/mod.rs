@@ -1,8 +1,12 @@
-//! Proofs about the first contact of bodies in motion: separating planes, and the proof of a contact.
+//! Proofs about the first contact of bodies in motion: separating planes, and the proof of a contact. `solid` has the
+//! proofs about solids.
 
-use glam::DVec3;
+mod plane;
+mod solid;
 
-use super::solid::SolidMotionProof;
+pub use self::plane::TimedPlane;
+pub(super) use self::solid::{Entry, PlaneName, RecordedProof, interval_middle};
+pub use self::solid::{FacetContact, FacetContactProof, MotionCover, SolidMotionProof, SpanProof};
 use colltrans_convex::answer::{Depth, NearPoints};
 
 /// Proof of an answer: separating planes, and a contact if the bodies meet.
@@ -27,25 +31,6 @@ pub struct MotionProof {
     /// bodies took its maximum number of steps.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub solids: Option<Box<SolidMotionProof>>,
-}
-
-/// A plane between the bodies at one time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
-pub struct TimedPlane {
-    /// Time of the plane.
-    pub time: f64,
-    /// Unit normal in the world, from the moving body to the fixed one.
-    pub normal: DVec3,
-    /// Lower bound of the gap of the plane minus the minimum gap, in world units.
-    pub gap: f64,
-    /// Whether this plane alone proves all times up to the next one, by the arcs of all vertices. Otherwise both planes
-    /// together do.
-    pub alone: bool,
 }
 
 /// Proof that the bodies are too near at a time.

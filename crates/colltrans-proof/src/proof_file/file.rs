@@ -171,7 +171,7 @@ impl ProofFile {
         let File { bodies, placement, query, statement, .. } = file;
         let bodies = bodies.into_iter().enumerate().map(|(k, body)| StoredBody::from_file(body, k));
         let bodies = bodies.collect::<Result<_, _>>()?;
-        let proof = Self { bodies, placement, query, statement };
+        let proof = Self::new(bodies, placement, query, statement);
         drop(proof.join_claim()?);
         Ok(proof)
     }

@@ -22,6 +22,7 @@ mod text;
 mod verify;
 
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
@@ -102,9 +103,20 @@ pub struct ProofFile {
     placement: Placement,
     query: Query,
     statement: Statement,
+    /// Result of [`Self::inverted_facets`], computed when it is first requested.
+    inverted: OnceLock<[usize; 2]>,
 }
 
 impl ProofFile {
+    fn new(
+        bodies: Vec<StoredBody>,
+        placement: Placement,
+        query: Query,
+        statement: Statement,
+    ) -> Self {
+        Self { bodies, placement, query, statement, inverted: OnceLock::new() }
+    }
+
     /// Builds the proof of an answer of [`Cast::first_contact`]. `cast` must be the cast of the query.
     pub fn of_outcome(cast: &Cast<'_>, outcome: &Outcome) -> Self {
         let statement = match outcome {
@@ -153,7 +165,7 @@ impl ProofFile {
             vec![StoredBody::from_convex(cast.moving()), StoredBody::from_convex(cast.fixed())];
         let along = Along { direction: cast.direction(), min_gap: cast.options().min_gap };
         let poses = [cast.moving_pose(), cast.fixed_pose()];
-        Self { bodies, placement: Placement::of_two(poses), query: Query::Cast(along), statement }
+        Self::new(bodies, Placement::of_two(poses), Query::Cast(along), statement)
     }
 
     /// Builds the proof of an answer of [`Pair::distance`] or [`Pair::within`]. `pair` must be the pair of
@@ -173,7 +185,7 @@ impl ProofFile {
         let bodies =
             vec![StoredBody::from_convex(pair.moving()), StoredBody::from_convex(pair.fixed())];
         let placement = Placement::of_two([pair.moving_pose(), pair.fixed_pose()]);
-        Self { bodies, placement, query: Query::Pair, statement }
+        Self::new(bodies, placement, Query::Pair, statement)
     }
 
     /// Computes [`Cast::clearance`] of solids again, with its proof. Each body is the union of its `pieces`
@@ -195,7 +207,7 @@ impl ProofFile {
         let statement = Statement::Clearance(SolidStatement::of(&again.with_options(options)?)?);
         let (placement, query) =
             (Placement::of_two(poses), Query::Cast(Along { direction, min_gap }));
-        Ok(Self { bodies: made.0.into(), placement, query, statement })
+        Ok(Self::new(made.0.into(), placement, query, statement))
     }
 
     /// Computes the distance of solids with its proof: [`Pair::distance`], or [`Pair::within`] for a length,
@@ -264,7 +276,7 @@ impl ProofFile {
             [moving, fixed],
         ));
         let (placement, query) = (Placement::of_two(poses), Query::Pair);
-        Ok((answer, Self { bodies: made.0.into(), placement, query, statement }))
+        Ok((answer, Self::new(made.0.into(), placement, query, statement)))
     }
 
     /// Computes the free directions again, for bodies that are rebuilt from the file, and their proof.
@@ -291,7 +303,7 @@ impl ProofFile {
         let statement = statement.map_err(|_| ProofFileError::Changed { body: 0 })?;
         let statement = Statement::FreeDirections(statement);
         let (placement, query) = (Placement::of_two(poses), Query::Pair);
-        Ok(Self { bodies: made.0.into(), placement, query, statement })
+        Ok(Self::new(made.0.into(), placement, query, statement))
     }
 
     /// Returns the statement. It is true if [`Self::check`] succeeds.
@@ -306,6 +318,10 @@ impl ProofFile {
     /// counts once on each side. The result is 0 if the statement has no tolerance, and for a scene query with
     /// the default tolerance, which the file does not contain.
     pub fn inverted_facets(&self) -> [usize; 2] {
+        *self.inverted.get_or_init(|| self.count_inverted_facets())
+    }
+
+    fn count_inverted_facets(&self) -> [usize; 2] {
         // The largest tolerance of each body on each side.
         let mut offset: [HashMap<usize, f64>; 2] = Default::default();
         let mut add = |side: usize, body: usize, tolerance: f64| {

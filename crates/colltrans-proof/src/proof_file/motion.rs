@@ -135,12 +135,9 @@ impl ProofFile {
     ) -> Self {
         let [moving, fixed] = cast.motions().map(Clone::clone);
         let movers = [Mover { body: 0, motion: moving }, Mover { body: 1, motion: fixed }];
-        Self {
-            bodies,
-            placement: Placement::Motions(vec![movers]),
-            query: Query::Motions(vec![pair_options]),
-            statement: Statement::Motions(vec![statement]),
-        }
+        let (placement, query) =
+            (Placement::Motions(vec![movers]), Query::Motions(vec![pair_options]));
+        Self::new(bodies, placement, query, Statement::Motions(vec![statement]))
     }
 
     /// Joins several proofs about motions to one proof of the first contact of all pairs.
@@ -180,7 +177,7 @@ impl ProofFile {
             statements.extend(of);
         }
         let (placement, query) = (Placement::Motions(movers), Query::Motions(pair_options));
-        let file = Self { bodies, placement, query, statement: Statement::Motions(statements) };
+        let file = Self::new(bodies, placement, query, Statement::Motions(statements));
         drop(file.join_claim()?);
         Ok(file)
     }

@@ -145,7 +145,7 @@ impl ProofFile {
         let parts = bodies.iter().map(|of| StoredTree::of_body(&of.body)).collect();
         let statement = Statement::Path(PathStatement { pairs, lower, upper, parts, proof });
         let (placement, query) = (Placement::Robot(robot), Query::Path(joints));
-        Ok((outcome, Self { bodies, placement, query, statement }))
+        Ok((outcome, Self::new(bodies, placement, query, statement)))
     }
 
     /// Returns the query of a proof about a path, and the names of the bodies. Returns `None` for other

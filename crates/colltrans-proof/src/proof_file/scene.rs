@@ -169,6 +169,6 @@ impl StoredScene {
 
     fn with_statement(self, statement: Statement) -> ProofFile {
         let (placement, query) = (Placement::Poses(self.places), Query::Scene(self.choices));
-        ProofFile { bodies: self.bodies, placement, query, statement }
+        ProofFile::new(self.bodies, placement, query, statement)
     }
 }

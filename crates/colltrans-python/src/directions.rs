@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
 use colltrans::record::FreeRecord;
-use colltrans::removal::directions::{FreeError, FreeOptions, FreeProof, Verdict};
+use colltrans::removal::directions::{self as removal, FreeOptions, FreeProof, Verdict};
 use colltrans::solid::SolidCast as _;
 use colltrans::solid::StartOverlap;
 use colltrans::{Placed, ProofFile, QueryError};
@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 
 use crate::answer::save;
 use crate::arrays::points;
-use crate::errors::{OrRaise, error, input_error};
+use crate::errors::{OrRaise, input_error};
 use crate::frozen::{getters, plain};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
@@ -37,9 +37,10 @@ struct Question {
     options: FreeOptions,
 }
 
-type PlacedPair<'a> = [Placed<'a, colltrans::Solid>; 2];
+pub(crate) type PlacedPair<'a> = [Placed<'a, colltrans::Solid>; 2];
 
-fn place_bodies<'a>(
+/// Places both bodies as solids. Returns an error for a point or a segment, which has no area.
+pub(crate) fn place_bodies<'a>(
     bodies: &'a [Piece; 2],
     poses: &[colltrans::Pose; 2],
 ) -> PyResult<PlacedPair<'a>> {
@@ -48,32 +49,25 @@ fn place_bodies<'a>(
     Ok([moving.at(poses[0]), fixed.at(poses[1])])
 }
 
-fn free_error(what: FreeError) -> PyErr {
-    match what {
-        FreeError::NotProven(what) => error("CertificateError", what),
-        what => error("QueryError", what),
-    }
-}
-
 impl FreeDirections {
     /// Evaluates a query of the library's answer for each direction.
     fn each<T>(
         &self,
         directions: &Bound<'_, PyAny>,
-        ask: impl Fn(
-            &colltrans::removal::directions::FreeDirections<'_>,
-            DVec3,
-        ) -> Result<T, QueryError>,
+        ask: impl Fn(&removal::FreeDirections<'_>, DVec3) -> Result<T, QueryError>,
     ) -> PyResult<Vec<T>> {
         let directions = points(directions, "directions")?;
+        self.with_answer(|free| directions.into_iter().map(|d| ask(&free, d).or_raise()).collect())
+    }
+
+    /// Rebuilds the library's answer from its proof, for a query.
+    fn with_answer<T>(
+        &self,
+        ask: impl FnOnce(removal::FreeDirections<'_>) -> PyResult<T>,
+    ) -> PyResult<T> {
         let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
-        let free = colltrans::removal::directions::FreeDirections::from_trusted_proof(
-            &moving,
-            &fixed,
-            &self.proof,
-        );
-        let free = free.map_err(free_error)?;
-        directions.into_iter().map(|d| ask(&free, d).or_raise()).collect()
+        let free = removal::FreeDirections::from_trusted_proof(&moving, &fixed, &self.proof);
+        ask(free.or_raise()?)
     }
 }
 
@@ -91,9 +85,8 @@ impl Question {
     fn answer(self) -> PyResult<FreeDirections> {
         let asked = self.settled()?;
         let [moving, fixed] = place_bodies(&asked.bodies, &asked.poses)?;
-        let free =
-            colltrans::removal::directions::FreeDirections::compute(&moving, &fixed, asked.options);
-        let free = free.map_err(free_error)?;
+        let free = removal::FreeDirections::compute(&moving, &fixed, asked.options);
+        let free = free.or_raise()?;
         let (proof, record) = (free.proof(), FreeRecord::from_directions(&free, |_| [None, None]));
         let Self { bodies, poses, options } = asked;
         Ok(FreeDirections { bodies, poses, options, proof, record })
@@ -142,20 +135,16 @@ impl FreeDirections {
     fn says(&self, py: Python<'_>, directions: &Bound<'_, PyAny>) -> PyResult<Vec<&'static str>> {
         let directions = points(directions, "directions")?;
         py.detach(|| {
-            let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
-            let proof = &self.proof;
-            let free = colltrans::removal::directions::FreeDirections::from_trusted_proof(
-                &moving, &fixed, proof,
-            );
-            let free = free.map_err(free_error)?;
-            let word = |d: DVec3| {
-                Ok(match free.classify(d).or_raise()? {
-                    Verdict::Free => "free",
-                    Verdict::Blocked(_) => "blocked",
-                    Verdict::Undecided => "undecided",
-                })
-            };
-            directions.into_iter().map(word).collect()
+            self.with_answer(|free| {
+                let word = |d: DVec3| {
+                    Ok(match free.classify(d).or_raise()? {
+                        Verdict::Free => "free",
+                        Verdict::Blocked(_) => "blocked",
+                        Verdict::Undecided => "undecided",
+                    })
+                };
+                directions.into_iter().map(word).collect()
+            })
         })
     }
 
@@ -206,12 +195,8 @@ impl FreeDirections {
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| {
             let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
-            let checked = colltrans::removal::directions::FreeDirections::from_proof(
-                &moving,
-                &fixed,
-                &self.proof,
-            );
-            checked.map(|_| ()).map_err(free_error)
+            let checked = removal::FreeDirections::from_proof(&moving, &fixed, &self.proof);
+            checked.map(|_| ()).or_raise()
         })
     }
 
@@ -234,16 +219,13 @@ impl FreeDirections {
     /// str
     fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
         py.detach(|| {
-            let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
-            let free = colltrans::removal::directions::FreeDirections::from_trusted_proof(
-                &moving,
-                &fixed,
-                &self.proof,
-            );
-            let free = free.map_err(free_error)?.with_options(self.options);
-            let pieces = [self.bodies[0].pieces().or_raise()?, self.bodies[1].pieces().or_raise()?];
-            let file = ProofFile::of_free_directions(&free, [&pieces[0], &pieces[1]]);
-            Ok(file.or_raise()?.to_json())
+            let file = self.with_answer(|free| {
+                let pieces =
+                    [self.bodies[0].pieces().or_raise()?, self.bodies[1].pieces().or_raise()?];
+                let free = free.with_options(self.options);
+                ProofFile::of_free_directions(&free, [&pieces[0], &pieces[1]]).or_raise()
+            })?;
+            Ok(file.to_json())
         })
     }
 

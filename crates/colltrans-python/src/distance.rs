@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, answer, object};
 use crate::arrays::{Vector, coordinates, row};
-use crate::errors::{OrRaise, error};
+use crate::errors::{OrRaise, error, other_bodies_error};
 use crate::features::{Feature, Features, Steps};
 use crate::frozen::getters;
 use crate::pair::{Of, Pair};
@@ -242,11 +242,6 @@ fn within_proof(of: &WithinOf, query: &Bound<'_, Pair>) -> PyResult<ProofFile> {
         (Of::Convex((within, _)), Of::Convex(pair)) => Ok(ProofFile::of_distance(&pair, within)),
         _ => query.get().solid_proof(PairQuestion::Within(of.length)),
     }
-}
-
-/// Builds the error for an answer that does not belong to the bodies of its query.
-fn other_bodies_error() -> PyErr {
-    error("CaseError", "an answer of other bodies")
 }
 
 impl Answer for DistanceOf {

@@ -7,6 +7,7 @@ use std::ffi::OsStr;
 use std::fmt::Display;
 
 use colltrans::motion::MotionError;
+use colltrans::removal::directions::FreeError;
 use colltrans::solid::SolidError;
 use colltrans::{
     BuildError, CaseError, CertificateError, PoseError, ProofError, ProofFileError, QueryError,
@@ -28,6 +29,11 @@ pub(crate) fn error(class: &str, message: impl Display) -> PyErr {
 /// Builds the exception for an invalid argument called `name`.
 pub(crate) fn input_error(name: &str, what: impl Display) -> PyErr {
     error("InputError", format_args!("{name}: {what}"))
+}
+
+/// Builds the exception for an answer that does not belong to the bodies of its query.
+pub(crate) fn other_bodies_error() -> PyErr {
+    error("CaseError", "an answer of other bodies")
 }
 
 fn class_called<'py>(py: Python<'py>, class: &str) -> PyResult<Bound<'py, PyType>> {
@@ -74,6 +80,12 @@ raised! {
 impl Raised for ReadError {
     fn class(&self) -> &'static str {
         if self.is_missing_file() { "MissingFileError" } else { "AssemblyError" }
+    }
+}
+
+impl Raised for FreeError {
+    fn class(&self) -> &'static str {
+        if matches!(self, Self::NotProven(_)) { "CertificateError" } else { "QueryError" }
     }
 }
 

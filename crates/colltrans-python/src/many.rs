@@ -40,14 +40,14 @@ enum RowQuery<'a> {
     Direction {
         directions: Table<'a>,
         graze_tolerances: Table<'a>,
-        keeps: Table<'a>,
+        min_gaps: Table<'a>,
         options: Options,
     },
     Length(Table<'a>),
     Nothing,
     Motion {
         motions: [Motions<'a>; 2],
-        keeps: Table<'a>,
+        min_gaps: Table<'a>,
         /// NaN stands for no tolerance.
         tolerances: Table<'a>,
     },
@@ -85,10 +85,10 @@ impl<'a> Work<'a> {
     /// Finds rows with the same bodies and rotations; `None` if they cannot share data.
     fn repeats(&self, n: usize) -> Option<Repeats<'a>> {
         match &self.with {
-            RowQuery::Direction { directions, keeps, options, .. }
+            RowQuery::Direction { directions, min_gaps, options, .. }
                 if options.solver != Solver::Cta =>
             {
-                let touches = |row: usize| keeps.row(row)[0] == 0.0;
+                let touches = |row: usize| min_gaps.row(row)[0] == 0.0;
                 Some(Repeats::find(n, &self.bodies, &self.poses, directions, touches))
             }
             _ => None,
@@ -97,7 +97,7 @@ impl<'a> Work<'a> {
 
     fn answer(&self, row: usize, by: &RowAnswerer<'_, '_, 'a>) -> Result<Row, String> {
         let (moving, fixed) = (self.bodies[0].get(row)?, self.bodies[1].get(row)?);
-        if let RowQuery::Motion { motions, keeps, tolerances } = &self.with {
+        if let RowQuery::Motion { motions, min_gaps, tolerances } = &self.with {
             let of = |k: usize| motions[k].get(row, &self.poses[k]);
             let (motions, tolerance) = ([of(0)?, of(1)?], tolerances.row(row)[0]);
             let tolerance = Some(tolerance).filter(|tolerance| !tolerance.is_nan());
@@ -106,19 +106,19 @@ impl<'a> Work<'a> {
                 self.question,
                 [moving, fixed],
                 motions,
-                keeps.row(row)[0],
+                min_gaps.row(row)[0],
                 tolerance,
             );
         }
         let (at, to) = (self.poses[0].pose(row)?, self.poses[1].pose(row)?);
-        let RowQuery::Direction { directions, graze_tolerances, keeps, options } = &self.with
+        let RowQuery::Direction { directions, graze_tolerances, min_gaps, options } = &self.with
         else {
             return self.answer_placed([moving, fixed], [at, to], row);
         };
         let (moving, fixed) = (moving.convex()?, fixed.convex()?);
         let options = options
             .with_graze_tolerance(graze_tolerances.row(row)[0])
-            .with_min_gap(keeps.row(row)[0]);
+            .with_min_gap(min_gaps.row(row)[0]);
         Cast::new(moving.at(at), fixed.at(to), directions.vector(row))
             .and_then(|cast| cast.with_options(options))
             .and_then(|cast| self.question.ask(&cast, by, self.featured))
@@ -235,7 +235,7 @@ pub(crate) fn ask_many<'py>(
         Question::Contact | Question::Range | Question::Clearance => RowQuery::Direction {
             directions: table("direction")?,
             graze_tolerances: table("graze_tolerance")?,
-            keeps: table("min_gap")?,
+            min_gaps: table("min_gap")?,
             options: options_of(Some(solver))?,
         },
         Question::Within => RowQuery::Length(table("length")?),
@@ -245,7 +245,7 @@ pub(crate) fn ask_many<'py>(
                 read_motions("moving_motion", &tables, n)?,
                 read_motions("fixed_motion", &tables, n)?,
             ],
-            keeps: table("min_gap")?,
+            min_gaps: table("min_gap")?,
             tolerances: table("tolerance")?,
         },
     };

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::answer::{Answer, answer, object};
 use crate::arrays::{Numbers, Shape, Vector, coordinates, row, vector};
 use crate::body;
-use crate::errors::{OrRaise, error, input_error, query_error};
+use crate::errors::{OrRaise, error, input_error, other_bodies_error, query_error};
 use crate::features::{Feature, Features};
 use crate::frozen::{Options, Shown, getters, html, pickled, show};
 use crate::pair::Of;
@@ -697,11 +697,6 @@ impl FirstContact {
         let upper = self.upper().map_or_else(|| "None".into(), |upper| format!("{upper:?}"));
         Ok(format!("FirstContact({outcome:?}, lower={:?}, upper={upper})", self.lower()))
     }
-}
-
-/// Builds the error for an answer that does not belong to the bodies of its query.
-fn other_bodies_error() -> PyErr {
-    error("CaseError", "an answer of other bodies")
 }
 
 impl Answer for Found {

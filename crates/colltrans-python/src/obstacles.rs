@@ -98,7 +98,7 @@ impl Obstacles {
 
 /// Computes how far a body can move with a minimum gap. Obstacles beyond the translation `before` are
 /// ignored.
-fn clearance_keeping(
+fn clearance_with_min_gap(
     among: &SceneQuery<'_>,
     direction: DVec3,
     before: f64,
@@ -355,7 +355,8 @@ impl Obstacles {
         let (body, at) = (Piece::from_python(body, "body")?, self::pose(pose, "pose")?);
         let direction = vector(direction, "direction")?;
         let before = before.unwrap_or(f64::INFINITY);
-        let ask = |among: &SceneQuery<'_>| clearance_keeping(among, direction, before, min_gap);
+        let ask =
+            |among: &SceneQuery<'_>| clearance_with_min_gap(among, direction, before, min_gap);
         let (found, asked) = self.ask(py, (body, at), ignore, ask)?;
         Ok(ObstacleClearance { found, direction, min_gap, asked })
     }
@@ -448,7 +449,7 @@ impl Obstacles {
         }
         let before = before.unwrap_or(f64::INFINITY);
         let ask = |k: usize, among: &SceneQuery<'_>| {
-            clearance_keeping(among, directions[k.min(directions.len() - 1)], before, min_gap)
+            clearance_with_min_gap(among, directions[k.min(directions.len() - 1)], before, min_gap)
         };
         let found = self.ask_rows(py, (&body, &poses), &ignore, threads, ask)?;
         let kind = |one: &SceneClearance| match outcome_of(one) {

@@ -62,8 +62,8 @@ pub(crate) fn with_min_gap<'a>(
     among: &SceneQuery<'a>,
     min_gap: f64,
 ) -> Result<SceneQuery<'a>, QueryError> {
-    let keeping = among.with_options(Options::default().with_min_gap(min_gap))?;
-    Ok(keeping.with_solid_options(SolidOptions::default().with_min_gap(min_gap)))
+    let query = among.with_options(Options::default().with_min_gap(min_gap))?;
+    Ok(query.with_solid_options(SolidOptions::default().with_min_gap(min_gap)))
 }
 
 /// The query of an answer: a body among obstacles.

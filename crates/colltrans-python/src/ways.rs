@@ -1,12 +1,11 @@
 //! Removal paths: sequences of straight moves by which one body leaves another.
 
-use colltrans::Placed;
 use colltrans::record::WaysRecord;
-use colltrans::removal::directions::FreeError;
-use colltrans::removal::path::RemovalOptions;
+use colltrans::removal::path::{RemovalOptions, RemovalSearch};
 use pyo3::prelude::*;
 
 use crate::arrays::points;
+use crate::directions::place_bodies;
 use crate::errors::{OrRaise, error};
 use crate::frozen::{getters, plain};
 use crate::pose::{Pose, pose};
@@ -18,26 +17,8 @@ use crate::solid_cast::{placed_bodies, run_patiently};
 pub(crate) struct WaysOut {
     bodies: [Piece; 2],
     poses: [colltrans::Pose; 2],
-    answer: colltrans::removal::path::RemovalSearch,
+    answer: RemovalSearch,
     record: WaysRecord,
-}
-
-type PlacedPair<'a> = [Placed<'a, colltrans::Solid>; 2];
-
-fn place_bodies<'a>(
-    bodies: &'a [Piece; 2],
-    poses: &[colltrans::Pose; 2],
-) -> PyResult<PlacedPair<'a>> {
-    let [moving, fixed] =
-        [bodies[0].solid_with_area().or_raise()?, bodies[1].solid_with_area().or_raise()?];
-    Ok([moving.at(poses[0]), fixed.at(poses[1])])
-}
-
-fn free_error(what: FreeError) -> PyErr {
-    match what {
-        FreeError::NotProven(what) => error("CertificateError", what),
-        what => error("QueryError", what),
-    }
 }
 
 placed_bodies!(WaysOut);
@@ -71,13 +52,11 @@ impl WaysOut {
         py.detach(|| {
             let [moving, fixed] = place_bodies(&self.bodies, &self.poses)?;
             match &self.answer {
-                colltrans::removal::path::RemovalSearch::Found(way) => way.verify(&[moving, fixed]),
-                colltrans::removal::path::RemovalSearch::Proven(proof) => {
-                    proof.verify(&moving, &fixed)
-                }
-                colltrans::removal::path::RemovalSearch::NotFound { .. } => Ok(()),
+                RemovalSearch::Found(way) => way.verify(&[moving, fixed]),
+                RemovalSearch::Proven(proof) => proof.verify(&moving, &fixed),
+                RemovalSearch::NotFound { .. } => Ok(()),
             }
-            .map_err(free_error)
+            .or_raise()
         })
     }
 
@@ -169,8 +148,7 @@ pub(crate) fn ways_out(
     let copies = [bodies[0].copy(py), bodies[1].copy(py)];
     run_patiently(py, &copies, move || {
         let [moving, fixed] = place_bodies(&bodies, &poses)?;
-        let answer = colltrans::removal::path::RemovalSearch::search(&moving, &fixed, &options)
-            .map_err(free_error)?;
+        let answer = RemovalSearch::search(&moving, &fixed, &options).or_raise()?;
         let record = WaysRecord::from_search(&answer);
         Ok(WaysOut { bodies, poses, answer, record })
     })

@@ -1,4 +1,4 @@
 #![no_main]
 //! Fuzzes [`colltrans_testkit::oracle::fuzz::keep`]. An ordinary test also runs its corpus.
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| colltrans_testkit::oracle::fuzz::keep(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| colltrans_testkit::oracle::fuzz::min_gap(bytes));

@@ -38,6 +38,6 @@ fn within_corpus() {
 }
 
 #[test]
-fn keep_corpus() {
-    fuzz::corpus("keep", 24).for_each(|bytes| fuzz::keep(&bytes));
+fn min_gap_corpus() {
+    fuzz::corpus("min_gap", 24).for_each(|bytes| fuzz::min_gap(&bytes));
 }

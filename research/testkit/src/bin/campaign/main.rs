@@ -13,7 +13,7 @@ mod bodies;
 mod bulk;
 mod casts;
 mod distances;
-mod keeping;
+mod min_gap;
 mod motions;
 mod paths;
 mod play;
@@ -117,7 +117,7 @@ const CAMPAIGNS: [Campaign; 17] = [
     },
     campaign("--solids", solids::cast_families, solids::CASTS, solids::casts),
     campaign("--solid-distances", solids::mesh_families, solids::DISTANCES, solids::distances),
-    campaign("--solid-keeping", solids::mesh_families, solids::KEEPING, solids::keeping),
+    campaign("--solid-min-gaps", solids::mesh_families, solids::MIN_GAPS, solids::min_gaps),
     campaign("--solid-motions", solids::motion_families, solids::MOTIONS, solids::motions),
     Campaign {
         counts: "DIRECTIONS",
@@ -137,7 +137,7 @@ const CAMPAIGNS: [Campaign; 17] = [
         among::COLUMNS,
         |asked, tally| among::examine(asked.family, asked.seed, tally),
     ),
-    campaign("--keeping", keeping_families, keeping::COLUMNS, keeping::examine),
+    campaign("--min-gaps", min_gap_families, min_gap::COLUMNS, min_gap::examine),
     campaign("--motions", settings, motions::COLUMNS, motions::examine),
     campaign("--paths", || to_strings(&paths::FAMILIES), paths::COLUMNS, paths::examine),
     campaign("--play", || to_strings(&play::families()), play::COLUMNS, play::examine),
@@ -168,8 +168,8 @@ fn settings() -> Vec<String> {
 }
 
 /// Returns the families of casts with a minimum gap.
-fn keeping_families() -> Vec<String> {
-    settings().into_iter().chain([keeping::GLIDING.to_owned()]).collect()
+fn min_gap_families() -> Vec<String> {
+    settings().into_iter().chain([min_gap::GLIDING.to_owned()]).collect()
 }
 
 /// Returns the kinds of proofs.

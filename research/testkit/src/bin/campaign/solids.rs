@@ -22,7 +22,7 @@ pub(crate) const CASTS: &[&str] =
 pub(crate) const DISTANCES: &[&str] =
     &["settings", "touching", "inside", "near", "apart", "skipped"];
 /// Columns of casts with a minimum gap.
-pub(crate) const KEEPING: &[&str] = &["settings", "nearer", "free", "blocked", "skipped"];
+pub(crate) const MIN_GAPS: &[&str] = &["settings", "nearer", "free", "blocked", "skipped"];
 /// Columns of motions.
 pub(crate) const MOTIONS: &[&str] =
     &["settings", "overlapping", "free", "grazing", "contact", "skipped"];
@@ -84,7 +84,7 @@ pub(crate) fn distances(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), Stri
 }
 
 /// Examines casts with a minimum gap.
-pub(crate) fn keeping(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
+pub(crate) fn min_gaps(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     count_outcome(min_gap::examine(asked.family, asked.seed), tally, |seen| match seen {
         min_gap::GapOutcome::Nearer => "nearer",
         min_gap::GapOutcome::Free => "free",

@@ -9,8 +9,8 @@ use glam::{DQuat, DVec3};
 
 use super::{MOST_JUDGED, Reader, read_setting, read_solid};
 use crate::oracle::settings::{Bodies, Setting};
-use crate::oracle::solids::{min_gap as solids_keep, nearest as solids};
-use crate::oracle::{among, min_gap as convex_keep, nearest};
+use crate::oracle::solids::{min_gap as solid_gap, nearest as solids};
+use crate::oracle::{among, min_gap as convex_gap, nearest};
 use crate::tally::Tally;
 
 /// Maximum number of pairs of facets that are judged in rational arithmetic. More pairs would only slow down a
@@ -116,7 +116,7 @@ pub fn within(bytes: &[u8]) {
 ///
 /// # Panics
 /// If an answer is wrong.
-pub fn keep(bytes: &[u8]) {
+pub fn min_gap(bytes: &[u8]) {
     let mut reader = Reader::new(bytes);
     match read_bodies(&mut reader) {
         None => {}
@@ -124,12 +124,12 @@ pub fn keep(bytes: &[u8]) {
             let gap = f64::from(reader.byte()) / 16.0 + 1.0 / 64.0;
             let ([a, b], [p, q]) = (&of.solids, of.poses);
             let cast = Cast::new(a.at(p), b.at(q), reader.vector());
-            let kept = cast.and_then(|cast| cast.with_tolerance(0.0)?.with_min_gap(gap));
+            let cast = cast.and_then(|cast| cast.with_tolerance(0.0)?.with_min_gap(gap));
             // Bodies that are much larger than the gap are covered by other judges.
-            if let Ok(cast) = kept
+            if let Ok(cast) = cast
                 && gap > 1e-6 * of.reach()
             {
-                solids_keep::judge(&cast).unwrap_or_else(|e| panic!("gap {gap}: {e}"));
+                solid_gap::judge(&cast).unwrap_or_else(|e| panic!("gap {gap}: {e}"));
             }
         }
         Some(Read::Convex(of)) => {
@@ -137,7 +137,7 @@ pub fn keep(bytes: &[u8]) {
             let Ok(cast) = of.0.query(&of.1).and_then(|cast| cast.with_min_gap(gap)) else {
                 return;
             };
-            let judge = convex_keep::GapJudge::new(cast);
+            let judge = convex_gap::GapJudge::new(cast);
             let outcome = cast.first_contact().unwrap_or_else(|e| panic!("gap {gap:e}: {e}"));
             judge.check(&outcome).unwrap_or_else(|e| panic!("gap {gap:e}: {e}"));
             let clearance = cast.clearance().unwrap_or_else(|e| panic!("gap {gap:e}: {e}"));

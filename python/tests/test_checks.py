@@ -146,6 +146,18 @@ def test_cargo_run_compiles_nothing_after_cargo_test() -> None:
     assert [unit for unit in program if unit not in tests] == []
 
 
+def test_tests_of_research_compile_nothing_of_the_product_again() -> None:
+    without = ["--exclude", "colltrans-lab", "--exclude", "colltrans-bench"]
+    product, both = compile_units("test"), compile_units("test", "--workspace", *without)
+    assert [unit for unit in product if unit not in both] == []
+
+
+def test_the_native_page_is_compiled_once_for_its_own_tests_and_these() -> None:
+    page = ["--manifest-path=crates/colltrans-wasm/Cargo.toml", "--features=assembly,motion"]
+    tests, native = compile_units("test", *page), compile_units("build", "--example=native", *page)
+    assert [unit for unit in native if unit not in tests] == []
+
+
 def test_cargo_test_compiles_each_library_of_the_product_once() -> None:
     # Unit tests and examples compile the library once more: CI asks for them.
     crates = {path.parent.name for path in ROOT.glob("crates/*/Cargo.toml")}

@@ -53,6 +53,11 @@ def page(lines: list[str]) -> list[dict[str, Any]]:
         "--release",
         "--example",
         "native",
+        # As `.ci/run tests` compiles it.
+        "--features",
+        "assembly,motion",
+        "--config",
+        ROOT / ".ci/quick.toml",
         "--manifest-path",
         crate,
     ]

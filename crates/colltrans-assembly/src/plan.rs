@@ -542,19 +542,9 @@ impl<'a> Planner<'a> {
             0 => Vec::new(),
             count => Sphere::with_directions(count).directions,
         };
-        let allowed = |group: &[usize], d| order.moving_count(group, left, d);
         for directions in [own, sphere] {
             tested.extend(directions.iter().copied().map(direction_bits));
-            let (start, known) = (self.options.start, &mut self.contact_cache);
-            let removal = lazy_search::smallest_group(
-                self.bodies,
-                &directions,
-                alive,
-                start,
-                allowed,
-                known,
-                self.watch,
-            )?;
+            let removal = self.smallest_group(order, left, &directions)?;
             if removal.is_some() {
                 return Ok(removal);
             }
@@ -625,6 +615,20 @@ impl<'a> Planner<'a> {
         groups.into_values().collect()
     }
 
+    /// Returns the removable group of present parts for which the fewest parts move, over some directions. Returns
+    /// `None` if no group that the order allows is removable.
+    fn smallest_group(
+        &mut self,
+        order: &Order,
+        left: &[usize],
+        directions: &[DVec3],
+    ) -> Result<Option<GroupRemoval>, AssemblyError> {
+        let allowed = |group: &[usize], d| order.moving_count(group, left, d);
+        let (bodies, start, watch) = (self.bodies, self.options.start, self.watch);
+        let (alive, known) = (order.present(), &mut self.contact_cache);
+        lazy_search::smallest_group(bodies, directions, alive, start, allowed, known, watch)
+    }
+
     /// Tries to prove that no direction separates the parts. If the proof fails, tests the directions that it left
     /// open.
     ///
@@ -644,18 +648,7 @@ impl<'a> Planner<'a> {
             SphereProof::Open(directions) => directions,
         };
         tested.extend(directions.iter().copied().map(direction_bits));
-        let (bodies, alive) = (self.bodies, order.present());
-        let allowed = |group: &[usize], d| order.moving_count(group, left, d);
-        let known = &mut self.contact_cache;
-        let removal = lazy_search::smallest_group(
-            bodies,
-            &directions,
-            alive,
-            start,
-            allowed,
-            known,
-            self.watch,
-        )?;
+        let removal = self.smallest_group(order, left, &directions)?;
         Ok((removal, None))
     }
 

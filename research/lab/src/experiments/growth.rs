@@ -1,7 +1,7 @@
 //! Figure 11: growth of steps and time with the size of the bodies, and the cost of thin faces.
 
 use super::{
-    Coherence, Gathered, Race, Results, against_size, fitted_reference, grouped_digits, in_passes,
+    Coherence, Gathered, Race, Results, against_size, by_kind_and_size, fitted_reference,
     listed_values, new_axis, new_series, sample_medians, time_text,
 };
 use crate::Experiment;
@@ -47,19 +47,9 @@ impl Gathered for Measured {
     }
 }
 
-const KINDS: [Kind; 3] = [Kind::Balanced, Kind::Thin, Kind::ThinMeridians];
-
 fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let items: Vec<_> =
-        KINDS.into_iter().flat_map(|kind| plan.sizes().iter().map(move |n| (kind, *n))).collect();
-    let told = |&(kind, n): &(Kind, usize)| {
-        (n, format!("{} bodies, {} vertices", kind.name(), grouped_digits(n as f64)))
-    };
-    let mut measured =
-        in_passes(plan, progress, &items, told, |&(kind, n), pass| measure(plan, kind, n, pass))
-            .into_iter();
     let [balanced, stretch, meridians] =
-        KINDS.map(|_| Grown(measured.by_ref().take(plan.sizes().len()).collect()));
+        by_kind_and_size(plan, progress, |kind, n, pass| measure(plan, kind, n, pass)).map(Grown);
     let thin = [&stretch, &meridians];
     let figures = vec![
         steps_figure(&balanced, &stretch),

@@ -5,8 +5,8 @@ use colltrans::observe::Clock;
 use colltrans_baselines::egjk::SupportSearch;
 
 use super::{
-    Coherence, Race, Results, against_size, grouped_digits, in_passes, median, median_of_medians,
-    new_axis, new_series, reference_curve, sample_medians, time_text,
+    Coherence, Race, Results, against_size, by_kind_and_size, grouped_digits, median,
+    median_of_medians, new_axis, new_series, reference_curve, sample_medians, time_text,
 };
 use crate::Experiment;
 use crate::claims::{Claim, Reason, Why, judged};
@@ -44,20 +44,11 @@ const DELTAS: [f64; 4] = [0.01, 0.005, 0.002_5, 0.001_3];
 /// Results for all sizes and changes, for one kind of face.
 struct Raced(Vec<[Results; DELTAS.len()]>);
 
-const KINDS: [Kind; 3] = [Kind::Balanced, Kind::Thin, Kind::ThinMeridians];
-
 fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let items: Vec<_> =
-        KINDS.into_iter().flat_map(|kind| plan.sizes().iter().map(move |n| (kind, *n))).collect();
-    let told = |&(kind, n): &(Kind, usize)| {
-        (n, format!("{} bodies, {} vertices", kind.name(), grouped_digits(n as f64)))
-    };
-    let mut measured = in_passes(plan, progress, &items, told, |&(kind, n), pass| {
+    let [balanced, stretch, meridians] = by_kind_and_size(plan, progress, |kind, n, pass| {
         DELTAS.map(|delta| measure_sequences(plan, kind, n, delta, pass))
     })
-    .into_iter();
-    let [balanced, stretch, meridians] =
-        KINDS.map(|_| Raced(measured.by_ref().take(plan.sizes().len()).collect()));
+    .map(Raced);
     let claims = vec![
         range_claim(&balanced),
         favourable_claim(&balanced),

@@ -111,6 +111,24 @@ fn in_passes<I, T: Gathered>(
     found.into_iter().flatten().collect()
 }
 
+/// Measures bodies with balanced faces, thin faces and thin meridians at all sizes. Returns the results of each
+/// kind in the order of the sizes.
+fn by_kind_and_size<T: Gathered>(
+    plan: &Plan,
+    progress: &mut dyn Progress,
+    measure: impl Fn(Kind, usize, u32) -> T,
+) -> [Vec<T>; 3] {
+    let kinds = [Kind::Balanced, Kind::Thin, Kind::ThinMeridians];
+    let sizes = plan.sizes();
+    let items: Vec<_> = kinds.iter().flat_map(|kind| sizes.iter().map(|n| (*kind, *n))).collect();
+    let describe = |&(kind, n): &(Kind, usize)| {
+        (n, format!("{} bodies, {} vertices", kind.name(), grouped_digits(n as f64)))
+    };
+    let measure = |&(kind, n): &(Kind, usize), pass| measure(kind, n, pass);
+    let mut measured = in_passes(plan, progress, &items, describe, measure).into_iter();
+    kinds.map(|_| measured.by_ref().take(sizes.len()).collect())
+}
+
 /// Results that several passes extend.
 trait Gathered {
     /// Adds the results of another pass.

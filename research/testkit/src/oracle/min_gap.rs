@@ -13,19 +13,10 @@
 use colltrans::{Cast, Clearance, Contact, FreeReason, Outcome, Separation};
 use glam::DVec3;
 
-use crate::oracle::check::Objection;
+use crate::oracle::check::{Objection, require};
 use crate::oracle::distance::distance;
 use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
 use crate::oracle::scene::size;
-
-macro_rules! require {
-    ($condition:expr, $($text:tt)+) => {
-        let holds: bool = $condition;
-        if !holds {
-            return Err(Objection(format!($($text)+)));
-        }
-    };
-}
 
 /// Maximum number of noises by which rounding may change the outcome given by the shadows.
 const UNSURE: f64 = 12.0;

@@ -14,19 +14,10 @@ use colltrans::{Depth, Distance, NearPoints, Pair, PlaneGap, VertexPair, Within}
 
 use glam::DVec3;
 
-use crate::oracle::check::Objection;
+use crate::oracle::check::{Objection, require};
 use crate::oracle::distance::{self, distance};
 use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
 use crate::oracle::scene::size;
-
-macro_rules! require {
-    ($condition:expr, $($text:tt)+) => {
-        let holds: bool = $condition;
-        if !holds {
-            return Err(Objection(format!($($text)+)));
-        }
-    };
-}
 
 /// The exact distance of two placed bodies, with which answers are compared.
 #[derive(Debug)]

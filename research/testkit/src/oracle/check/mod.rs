@@ -64,10 +64,11 @@ macro_rules! require {
     ($condition:expr, $($text:tt)+) => {
         let holds: bool = $condition;
         if !holds {
-            return Err(Objection(format!($($text)+)));
+            return Err($crate::oracle::check::Objection(format!($($text)+)));
         }
     };
 }
+pub(crate) use require;
 
 mod certificate;
 mod truth;

@@ -159,7 +159,8 @@ fn first_page_shows_all_parts_and_lists_shapes() {
 fn report_text_matches_golden_file() {
     let mut text = page_text(&plan_and_report(&boxed(), "box").1);
     text += &page_text(&plan_and_report(&stud(), "stud").1);
-    let golden_path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/report.txt");
+    let golden_path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../colltrans-assembly/tests/golden/report.txt");
     if std::env::var_os("WRITE_GOLDEN").is_some() {
         std::fs::write(&golden_path, &text).unwrap();
     }

@@ -614,7 +614,6 @@ fn invalid_collada_reports_the_reason() {
 }
 
 #[test]
-#[cfg(feature = "dae")]
 fn overflowing_collada_strides_are_rejected() {
     let nodes = "<node><instance_geometry url=\"#g\"/></node>";
     let file = dae_text("", &pyramid_faces(), nodes);

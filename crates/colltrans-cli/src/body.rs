@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use colltrans::solid::SolidError;
-use colltrans::{BuildError, ConvexPolyhedron};
+use colltrans::{Aabb, BuildError, ConvexPolyhedron};
 use colltrans_mesh::body::{BodyError, BodyKind, BodyOptions, Excess, LoadError, Loaded, Note};
 
 /// A convex body of a mesh file, with the differences between them.
@@ -25,6 +25,16 @@ impl Part {
     pub(crate) const fn from_body(body: ConvexPolyhedron) -> Self {
         Self { body, excess: None, dent: None, precision: 0.0, notes: Vec::new() }
     }
+
+    /// Returns the bounding box of the body.
+    pub(crate) fn bounds(&self) -> Aabb {
+        convex_bounds(&self.body)
+    }
+}
+
+/// Returns the bounding box of a convex body.
+pub(crate) fn convex_bounds(body: &ConvexPolyhedron) -> Aabb {
+    body.vertices().iter().fold(Aabb::EMPTY, |all, &v| all.union(&Aabb { low: v, high: v }))
 }
 
 /// Reads a mesh file as a convex body.

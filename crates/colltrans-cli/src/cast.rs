@@ -14,6 +14,7 @@ use crate::driver::{AnswerOutputs, OutputTargets, answer_directions};
 use crate::failure::{Code, Failure, note, print};
 use crate::inputs::read_text_or_stdin;
 use crate::load;
+use crate::numbers::smaller_extent;
 use crate::picture::{CastPicture, draw_cast};
 use crate::record::{Hulls, Line};
 use crate::report;
@@ -77,7 +78,14 @@ impl<'a> Request<'a> {
                 let (answer, line) = answer_cast(&cast)?;
                 return targets.write_answer(AnswerOutputs {
                     record: &line,
-                    text: || report::cast_answer_text(&answer, &line, cast.direction()),
+                    text: || {
+                        report::cast_answer_text(
+                            &answer,
+                            &line,
+                            cast.direction(),
+                            smaller_extent(parts.map(Part::bounds)),
+                        )
+                    },
                     proof: || Ok(Some(answer.proof(&cast).to_json())),
                     picture: || {
                         let range = match answer {

@@ -8,7 +8,7 @@ use colltrans_mesh::{Mesh, NumberFormat, ReadOptions};
 
 use crate::args::InfoArguments;
 use crate::failure::{Code, Failure, print};
-use crate::numbers::{count_text, rounded_to_error, rounded_up, six_digits, vector};
+use crate::numbers::{count_text, error_bound, estimate, six_digits, vector};
 use crate::report::push_line;
 use crate::solid;
 use crate::terminal::escape_line;
@@ -48,12 +48,12 @@ fn describe_mesh(path: &Path, mesh: &Mesh, convex_tolerance: Option<f64>) -> Str
     if let Some(why) = &not_finite {
         push_line(&mut text, "extent", why);
     } else if let Some([low, high]) = mesh.bounds() {
-        let [x, y, z] = (high - low).to_array().map(|c| rounded_to_error(c, 1e-14 * mesh.extent()));
+        let [x, y, z] = (high - low).to_array().map(|c| estimate(c, 1e-14 * mesh.extent()));
         push_line(&mut text, "extent", &format!("{x} x {y} x {z}"));
         push_line(&mut text, "", &format!("from {} to {}", vector(low), vector(high)));
     }
     if mesh.format != NumberFormat::Double {
-        let what = format!("{}, known to within {}", mesh.format, rounded_up(mesh.precision));
+        let what = format!("{}, known to within {}", mesh.format, error_bound(mesh.precision));
         push_line(&mut text, "coordinates", &what);
     }
     if let Some(merged) = Note::merged(mesh) {
@@ -93,7 +93,7 @@ fn describe_mesh(path: &Path, mesh: &Mesh, convex_tolerance: Option<f64>) -> Str
             if !mesh.faces.is_empty() && !excess.is_within(tolerance, mesh.extent()) {
                 push_line(&mut text, "hull exceeds", &excess.to_string());
             }
-            let error = rounded_up(hull.hull_error());
+            let error = error_bound(hull.hull_error());
             push_line(
                 &mut text,
                 "hull error",
@@ -152,7 +152,7 @@ fn face_count(mesh: &Mesh) -> String {
 
 /// Returns a volume with the digits that rounding leaves: it is a sum of many products.
 fn volume_text(volume: f64) -> String {
-    rounded_to_error(volume, 1e-13 * volume)
+    estimate(volume, 1e-13 * volume)
 }
 
 /// Describes whether the surface is closed, or one of its open edges.
@@ -179,8 +179,8 @@ fn convexity_text(mesh: &Mesh, face: usize, depth: f64, convex_tolerance: Option
     format!(
         "{verdict}: face {face} lies {} below the hull, {} of the extent (tolerated: {})",
         six_digits(depth),
-        rounded_up(relative),
-        rounded_up(tolerance)
+        error_bound(relative),
+        error_bound(tolerance)
     )
 }
 

@@ -15,7 +15,10 @@ use crate::case;
 use crate::driver::{AnswerOutputs, OutputTargets};
 use crate::failure::{Code, Failure, note};
 use crate::load;
-use crate::numbers::{count_text, known_vector, number, rounded_to_error, unit_vector};
+use crate::numbers::{
+    at_least, at_most, count_text, estimate, interval, length_up, point, smaller_extent,
+    unit_quaternion, unit_vector,
+};
 use crate::picture::{MotionPicture, Surface, draw_motion};
 use crate::record::Line;
 use crate::report::{
@@ -62,7 +65,8 @@ fn answer_convex(
     };
     let surface =
         |k: usize, pose: &Pose, from| placed_surface(&bodies[k][pair[k]].body, pose, from);
-    write_answer(targets, &line, motions, proof, &surface)?;
+    let extent = smaller_extent([0, 1].map(|k| bodies[k][pair[k]].bounds()));
+    write_answer(targets, &line, Placed { motions, extent, surface: &surface }, proof)?;
     undecided.map_or(Ok(()), Err)
 }
 
@@ -92,27 +96,35 @@ fn answer_parts(
         let (_, proof) = proof.map_err(|error| Failure::new(Code::Query, error.to_string()))?;
         Ok(Some(proof.to_json()))
     };
-    write_answer(targets, &line, motions, proof, &|k, pose, origin| {
-        bodies[k].surface(pose, origin)
-    })?;
+    let surface = |k: usize, pose: &Pose, origin| bodies[k].surface(pose, origin);
+    let placed = Placed { motions, extent: solid::extent(bodies), surface: &surface };
+    write_answer(targets, &line, placed, proof)?;
     match (line.record.outcome, line.record.time) {
         (Ending::Undecided, Some(TimeRecord { lower, .. })) => Err(step_limit_error(lower).into()),
         _ => Ok(()),
     }
 }
 
+/// The moving and the fixed body of an answer.
+struct Placed<'a> {
+    motions: &'a [Motion; 2],
+    /// Extent of the smaller body.
+    extent: f64,
+    surface: &'a dyn Fn(usize, &Pose, DVec3) -> Surface,
+}
+
 /// Writes the answer for both kinds of bodies.
 fn write_answer(
     targets: OutputTargets<'_>,
     line: &Line<MotionRecord>,
-    motions: &[Motion; 2],
+    placed: Placed<'_>,
     proof: impl FnOnce() -> Result<Option<String>, Failure>,
-    surface: &dyn Fn(usize, &Pose, DVec3) -> Surface,
 ) -> Result<(), Failure> {
+    let Placed { motions, extent, surface } = placed;
     let (record, motions) = (&line.record, motions.each_ref());
     targets.write_answer(AnswerOutputs {
         record: line,
-        text: || answer_text(line, motions),
+        text: || answer_text(line, motions, extent),
         proof,
         picture: || Ok(draw_motion(MotionPicture { record, motions, surface })),
     })
@@ -196,7 +208,7 @@ fn first_of_pairs(
     if let (true, Some((upper, [i, j]))) = (is_open, least_upper) {
         // A pair without a proven contact may come first although another pair is proven to meet later.
         let [moving, fixed] = [&files[0][i], &files[1][j]].map(|file| file.display());
-        note(&format!("{moving} and {fixed} are proven to meet by time {}", number(upper)));
+        note(&format!("{moving} and {fixed} are proven to meet by time {}", at_most(upper)));
         if let Some(time) = &mut first.line.record.time {
             time.upper = Some(upper);
         }
@@ -214,8 +226,9 @@ impl PairAnswer {
     }
 }
 
-/// Returns the answer as text. `motions` are those of the moving and of the fixed body.
-pub(crate) fn answer_text(line: &Line<MotionRecord>, motions: [&Motion; 2]) -> String {
+/// Returns the answer as text. `motions` are those of the moving and of the fixed body, `extent` is that of the smaller
+/// one.
+pub(crate) fn answer_text(line: &Line<MotionRecord>, motions: [&Motion; 2], extent: f64) -> String {
     let record = &line.record;
     let mut text = match record.outcome {
         Ending::Contact => "contact\n".into(),
@@ -233,35 +246,28 @@ pub(crate) fn answer_text(line: &Line<MotionRecord>, motions: [&Motion; 2]) -> S
     if let Some(time) = record.time {
         match time {
             TimeRecord { lower, upper: None } if record.outcome == Ending::Undecided => {
-                push_line(&mut text, "free until", &number(lower));
+                push_line(&mut text, "free until", &at_least(lower));
             }
             TimeRecord { lower, upper: Some(upper) }
                 if matches!(record.outcome, Ending::Grazing | Ending::Undecided) =>
             {
-                push_line(&mut text, "no earlier", &number(lower));
-                push_line(
-                    &mut text,
-                    "no later",
-                    &format!("{}, when another pair meets", number(upper)),
-                );
+                push_line(&mut text, "no earlier", &at_least(lower));
+                let end = format!("{}, when another pair meets", at_most(upper));
+                push_line(&mut text, "no later", &end);
             }
             _ => push_times(&mut text, time),
         }
         if let Some(TimeRecord { lower, upper }) = record.shrunk_time {
-            let upper = upper.map_or("not proven".into(), number);
-            push_line(
-                &mut text,
-                "offset",
-                &format!("{} to {upper}, for the offset bodies", number(lower)),
-            );
+            let bounds = interval([lower, upper.unwrap_or(f64::INFINITY)]);
+            push_line(&mut text, "offset", &format!("{bounds}, for the offset bodies"));
         }
-        push_pose(&mut text, "pose", motions[0], time.lower);
+        push_pose(&mut text, "pose", motions[0], time.lower, extent);
         if *motions[1] != Motion::at_rest(motions[1].start_pose()) {
-            push_pose(&mut text, "fixed pose", motions[1], time.lower);
+            push_pose(&mut text, "fixed pose", motions[1], time.lower, extent);
         }
     }
-    if let Some(point) = record.point {
-        push_line(&mut text, "point", &known_vector(point.into(), 1e-12));
+    if let Some(place) = record.point {
+        push_line(&mut text, "point", &point(place.into(), 0.0, extent));
     }
     if let Some(normal) = record.normal {
         push_line(&mut text, "normal", &unit_vector(DVec3::from_array(normal)));
@@ -273,7 +279,7 @@ pub(crate) fn answer_text(line: &Line<MotionRecord>, motions: [&Motion; 2]) -> S
         push_line(&mut text, "proof", &format!("{planes}, found with {samples}"));
     }
     if let Some(tolerance) = record.tolerance {
-        push_line(&mut text, "tolerance", &number(tolerance));
+        push_line(&mut text, "tolerance", &length_up(tolerance));
     }
     let is_overlap = record.outcome == Ending::Overlapping;
     push_start_overlaps(
@@ -292,22 +298,18 @@ fn push_times(text: &mut String, TimeRecord { lower, upper }: TimeRecord) {
         let value = lower + 0.5 * (upper - lower);
         // The middle of distant bounds is not an estimate.
         if upper - lower < 1e-3 {
-            push_line(
-                text,
-                "time",
-                &format!("{} of the motion", rounded_to_error(value, upper - lower)),
-            );
+            push_line(text, "time", &format!("{} of the motion", estimate(value, upper - lower)));
         }
-        push_line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
+        push_line(text, "bounds", &interval([lower, upper]));
     } else {
-        push_line(text, "no earlier", &number(lower));
+        push_line(text, "no earlier", &at_least(lower));
     }
 }
 
-/// Appends the pose of a body at a time.
-fn push_pose(text: &mut String, name: &str, motion: &Motion, time: f64) {
+/// Appends the pose of a body at a time. `extent` is that of the smaller body.
+fn push_pose(text: &mut String, name: &str, motion: &Motion, time: f64, extent: f64) {
     let Ok(pose) = motion.pose_at(time) else { return };
     let q = pose.rotation();
-    let rotation = [q.x, q.y, q.z, q.w].map(|x| rounded_to_error(x, 1e-14)).join(",");
-    push_line(text, name, &format!("{},{rotation}", known_vector(pose.translation(), 1e-14)));
+    let place = point(pose.translation(), 0.0, extent);
+    push_line(text, name, &format!("{place},{}", unit_quaternion([q.x, q.y, q.z, q.w])));
 }

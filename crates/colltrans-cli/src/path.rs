@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use colltrans::motion::path::{JointPath, PathError, PathOutcome, PathPlace};
+use colltrans::motion::path::{JointPath, PathCast, PathError, PathOutcome, PathPlace};
 use colltrans::record::{Ending, PathRecord, TimeRecord};
-use colltrans::{ProofFile, ProofFileError};
+use colltrans::{AnyPlaced, ProofFile, ProofFileError};
 use colltrans_assembly::AssemblyError;
 use colltrans_assembly_io::ReadError;
 use colltrans_assembly_io::read::{self, ReadOptions};
@@ -14,11 +14,14 @@ use colltrans_mesh::body::BodyOptions;
 
 use crate::args::PathArguments;
 use crate::assembly::read_error_hint;
-use crate::body;
+use crate::body::{self, convex_bounds};
 use crate::driver::{AnswerOutputs, OutputTargets, no_picture};
 use crate::failure::{Code, Failure, note};
 use crate::inputs::read_text_or_stdin;
-use crate::numbers::{count_text, known_vector, number, rounded_to_error, unit_vector};
+use crate::numbers::{
+    at_least, at_most, count_text, estimate, interval, length_down, point, smaller_extent,
+    unit_vector,
+};
 use crate::outputs;
 use crate::report::{meet_verb, push_line, push_min_gap};
 
@@ -52,7 +55,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     record.notes.clone_from(&limitations);
     targets.write_answer(AnswerOutputs {
         record: &record,
-        text: || answer_text(&record, &outcome, cell.robot()),
+        text: || answer_text(&record, &outcome, cell.robot(), smallest_extent(&cast)),
         proof: || Ok(None),
         picture: no_picture,
     })?;
@@ -75,7 +78,7 @@ fn undecided_failure(record: &PathRecord) -> Option<Failure> {
     let message = format!(
         "the search between {a} and {b} took its maximum number of steps: no two bodies meet before {}; later contacts of \
          these two are undecided; leave the pair out with --ignore {a},{b}, or give a minimum gap with --min-gap",
-        number(time.lower)
+        at_least(time.lower)
     );
     Some(Failure::new(Code::Query, message))
 }
@@ -234,8 +237,16 @@ fn xml_escaped(value: &str) -> String {
     value.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
-/// Returns the answer as text.
-fn answer_text(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> String {
+/// Returns the extent of the smallest body.
+fn smallest_extent(cast: &PathCast<'_>) -> f64 {
+    smaller_extent(cast.bodies().map(|placed| match placed {
+        AnyPlaced::Convex(placed) => convex_bounds(placed.body()),
+        AnyPlaced::Solid(placed) => placed.body().bounds(),
+    }))
+}
+
+/// Returns the answer as text. `extent` is that of the smallest body.
+fn answer_text(record: &PathRecord, outcome: &PathOutcome, robot: &Robot, extent: f64) -> String {
     let restriction = if record.left_out.is_empty() { "" } else { " of the checked pairs" };
     let mut text = match record.outcome {
         Ending::Contact => "contact\n".into(),
@@ -247,7 +258,7 @@ fn answer_text(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> Str
                 None => count_text(count, "pair overlaps", "pairs overlap"),
                 Some(gap) => {
                     let pairs = count_text(count, "pair overlaps or is", "pairs overlap or are");
-                    format!("{pairs} as near as {}", number(gap))
+                    format!("{pairs} as near as {}", length_down(gap))
                 }
             };
             format!("overlapping: {pairs} where the path begins\n")
@@ -265,26 +276,20 @@ fn answer_text(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> Str
         && record.outcome != Ending::Overlapping
     {
         if record.outcome == Ending::Undecided {
-            push_line(&mut text, "free until", &number(lower));
+            push_line(&mut text, "free until", &at_least(lower));
             if let Some(upper) = upper {
-                push_line(
-                    &mut text,
-                    "no later",
-                    &format!("{}, when another pair meets", number(upper)),
-                );
+                let end = format!("{}, when another pair meets", at_most(upper));
+                push_line(&mut text, "no later", &end);
             }
         } else if let Some(upper) = upper {
-            push_line(
-                &mut text,
-                "time",
-                &rounded_to_error(lower + 0.5 * (upper - lower), upper - lower),
-            );
-            push_line(&mut text, "bounds", &format!("{} to {}", number(lower), number(upper)));
+            let middle = lower + 0.5 * (upper - lower);
+            push_line(&mut text, "time", &estimate(middle, upper - lower));
+            push_line(&mut text, "bounds", &interval([lower, upper]));
         } else {
-            push_line(&mut text, "no earlier", &number(lower));
+            push_line(&mut text, "no earlier", &at_least(lower));
         }
         if let Some(PathPlace { row, share }) = record.place {
-            let percent = rounded_to_error(100.0 * share, 0.1);
+            let percent = estimate(100.0 * share, 0.1);
             push_line(
                 &mut text,
                 "place",
@@ -292,8 +297,8 @@ fn answer_text(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> Str
             );
         }
     }
-    if let Some(point) = record.point {
-        push_line(&mut text, "point", &known_vector(point.into(), 1e-12));
+    if let Some(place) = record.point {
+        push_line(&mut text, "point", &point(place.into(), 0.0, extent));
     }
     if let Some(normal) = record.normal {
         push_line(&mut text, "normal", &unit_vector(normal.into()));

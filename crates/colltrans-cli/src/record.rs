@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::value::RawValue;
 
 use crate::body::Part;
-use crate::numbers::{six_digits, unit_vector};
+use crate::numbers::{rounded_to_error, six_digits};
 use crate::terminal::escape_json;
 
 /// One answer.
@@ -61,7 +61,7 @@ impl From<Record> for Line {
     fn from(record: Record) -> Self {
         let message = record.contact().and_then(|contact| {
             let (overlap, along) = (six_digits(contact.overlap?), contact.sideways?);
-            let along = unit_vector(along.into());
+            let along = along.map(|c| rounded_to_error(c, 1e-14)).join(",");
             Some(format!("the projections overlap by {overlap} along [{along}]"))
         });
         Self { message, ..Self::from_record(record) }

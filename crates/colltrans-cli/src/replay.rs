@@ -5,9 +5,11 @@ use colltrans::record::{MotionRecord, Question};
 use colltrans::{Case, CaseError};
 
 use crate::args::ReplayArguments;
+use crate::body::convex_bounds;
 use crate::failure::{Code, Failure, print};
 use crate::inputs::read_text;
 use crate::motion;
+use crate::numbers::smaller_extent;
 use crate::record::{self, Line};
 use crate::report;
 
@@ -33,7 +35,8 @@ fn replay_cast(case: &Case, as_json: bool) -> Result<String, Failure> {
     Ok(if as_json {
         record::json_line(&line)
     } else {
-        report::cast_answer_text(&answer, &line, cast.direction())
+        let extent = smaller_extent([cast.moving(), cast.fixed()].map(convex_bounds));
+        report::cast_answer_text(&answer, &line, cast.direction(), extent)
     })
 }
 
@@ -45,8 +48,14 @@ fn replay_motion(case: &MotionCase, as_json: bool) -> Result<String, Failure> {
     let cast = case.cast();
     let outcome = cast.first_contact()?;
     let line = Line::from_record(MotionRecord::from_outcome(&outcome, &cast));
-    let text =
-        if as_json { record::json_line(&line) } else { motion::answer_text(&line, cast.motions()) };
+    let text = if as_json {
+        record::json_line(&line)
+    } else {
+        {
+            let extent = smaller_extent(cast.bodies().map(convex_bounds));
+            motion::answer_text(&line, cast.motions(), extent)
+        }
+    };
     if let MotionOutcome::Undecided(open) = &outcome {
         print(&text)?;
         return Err(motion::step_limit_error(open.lower).into());

@@ -13,7 +13,8 @@ use colltrans::{
 };
 
 use crate::numbers::{
-    decade, known_vector, number, rounded_to_error, rounded_up, six_digits, unit_vector,
+    at_least, at_most, error_bound, estimate, interval, length_down, length_up, point, six_digits,
+    unit_vector, vector,
 };
 use crate::record::{Hulls, Line};
 use crate::terminal::escape_line;
@@ -21,33 +22,48 @@ use crate::terminal::escape_line;
 /// Maximum number of vertices of a feature that are listed.
 const MAX_VERTICES: usize = 12;
 
-/// Returns the answer of a cast or a clearance of convex bodies.
-pub(crate) fn cast_answer_text(answer: &Answer, line: &Line, direction: DVec3) -> String {
+/// Returns the answer of a cast or a clearance of convex bodies. `extent` is that of the smaller body.
+pub(crate) fn cast_answer_text(
+    answer: &Answer,
+    line: &Line,
+    direction: DVec3,
+    extent: f64,
+) -> String {
     let empty = ContactRecord::default();
     let record = line.record.contact().unwrap_or(&empty);
+    let context = Context { record, direction, extent };
     let mut text = match answer {
-        Answer::Contact(range) => contact_range_text(range, record, direction),
-        Answer::Clearance(clearance) => clearance_text(clearance, record, direction),
+        Answer::Contact(range) => contact_range_text(range, &context),
+        Answer::Clearance(clearance) => clearance_text(clearance, &context),
     };
     push_min_gap(&mut text, record.min_gap);
     push_hulls(&mut text, line.hull, line.record.outcome(), false);
     text
 }
 
+/// The query and the record of an answer.
+struct Context<'a> {
+    record: &'a ContactRecord,
+    direction: DVec3,
+    /// Extent of the smaller body.
+    extent: f64,
+}
+
 /// Returns the answer of `colltrans cast`.
-fn contact_range_text(answer: &ContactRange, record: &ContactRecord, direction: DVec3) -> String {
+fn contact_range_text(answer: &ContactRange, context: &Context<'_>) -> String {
+    let direction = context.direction;
     let mut text = String::new();
     match answer {
         ContactRange::Contact { first, last } => {
             text.push_str("contact\n");
             push_range(&mut text, first, last, direction);
-            push_contact(&mut text, first, record, direction);
+            push_contact(&mut text, first, context);
         }
         ContactRange::Grazing { first, last } => {
             text.push_str("grazing: the bodies slide along each other\n");
             push_overlap(&mut text, first);
             push_range(&mut text, &first.contact, &last.contact, direction);
-            push_contact(&mut text, &first.contact, record, direction);
+            push_contact(&mut text, &first.contact, context);
         }
         ContactRange::Separated(answer) => {
             text.push_str("separated: the bodies never meet along this direction\n");
@@ -58,7 +74,8 @@ fn contact_range_text(answer: &ContactRange, record: &ContactRecord, direction: 
 }
 
 /// Returns the answer of `colltrans clearance` for convex bodies.
-fn clearance_text(answer: &Clearance, record: &ContactRecord, direction: DVec3) -> String {
+fn clearance_text(answer: &Clearance, context: &Context<'_>) -> String {
+    let direction = context.direction;
     let mut text = String::new();
     match answer {
         Clearance::Blocked { distance, contact: first } => {
@@ -71,7 +88,7 @@ fn clearance_text(answer: &Clearance, record: &ContactRecord, direction: DVec3) 
             let translation =
                 translation_text(first.translation, first.certificate.rounding, direction);
             push_line(&mut text, "translation", &translation);
-            push_contact(&mut text, first, record, direction);
+            push_contact(&mut text, first, context);
         }
         Clearance::Free(FreeReason::Slides(grazing)) => {
             text.push_str("slides: free, the bodies slide along each other\n");
@@ -80,7 +97,7 @@ fn clearance_text(answer: &Clearance, record: &ContactRecord, direction: DVec3) 
             let translation =
                 translation_text(first.translation, first.certificate.rounding, direction);
             push_line(&mut text, "translation", &translation);
-            push_contact(&mut text, first, record, direction);
+            push_contact(&mut text, first, context);
         }
         Clearance::Free(FreeReason::Behind(last)) => {
             text.push_str("behind: free, the bodies only meet behind\n");
@@ -96,11 +113,8 @@ fn clearance_text(answer: &Clearance, record: &ContactRecord, direction: DVec3) 
             for (name, contact, sense) in
                 [("free after", first, "backwards"), ("or after", last, "forwards")]
             {
-                push_line(
-                    &mut text,
-                    name,
-                    &format!("{}, {sense}", bound_text(-contact.certificate.lower)),
-                );
+                let travel = at_most(-contact.certificate.lower);
+                push_line(&mut text, name, &format!("{travel} times the direction, {sense}"));
                 let estimate =
                     translation_text(-contact.translation, contact.certificate.rounding, direction);
                 push_line(&mut text, "", &format!("best estimate {estimate}"));
@@ -120,9 +134,7 @@ pub(crate) fn scan_line(line: &Line, direction: DVec3) -> String {
         }) => {
             let (length, error) = (direction.length(), rounding.unwrap_or_default());
             columns.extend(match *translation {
-                Some(t) => {
-                    [rounded_to_error(t, error), rounded_to_error(t * length, error * length)]
-                }
+                Some(t) => [estimate(t, error), estimate(t * length, error * length)],
                 None => ["-", "-"].map(str::to_owned),
             });
         }
@@ -131,12 +143,12 @@ pub(crate) fn scan_line(line: &Line, direction: DVec3) -> String {
     if let Some(normal) = line.record.contact().and_then(|contact| contact.normal) {
         columns.push(unit_vector(DVec3::from_array(normal)));
     }
-    let direction = known_vector(direction, 0.0);
+    let direction = vector(direction);
     format!("{direction:<24} {}\n", align_columns(&columns))
 }
 
-/// Returns a distance that is safe to move by, as a multiple of the direction and as a length; `-` if there is none. The
-/// length is rounded down.
+/// Returns a distance that is safe to move by, as a multiple of the direction and as a length; `-` if there is none. Both
+/// are rounded down.
 pub(crate) fn safe_distance(distance: Option<f64>, direction: DVec3) -> [String; 2] {
     let Some(distance) = distance else { return ["-", "-"].map(str::to_owned) };
     // The length of the direction and the product have three rounding errors.
@@ -146,7 +158,7 @@ pub(crate) fn safe_distance(distance: Option<f64>, direction: DVec3) -> [String;
     } else {
         (length - 4.0 * f64::EPSILON * length).max(0.0)
     };
-    [number(distance), number(length)]
+    [distance, length].map(at_least)
 }
 
 /// Returns the header of the columns of [`scan_line`].
@@ -172,12 +184,12 @@ fn align_columns(columns: &[String]) -> String {
 /// Returns a translation that is known to within `error`, and its length.
 fn translation_text(t: f64, error: f64, direction: DVec3) -> String {
     let length = direction.length();
-    let shown = rounded_to_error(t * length, error * length);
-    format!("{} times the direction, a length of {shown}", rounded_to_error(t, error))
+    let shown = estimate(t * length, error * length);
+    format!("{} times the direction, a length of {shown}", estimate(t, error))
 }
 
 /// Returns a translation that is safe to move by, and its length. The known digits of `t` are used if the rounded number
-/// does not exceed `limit`, the travel of the offset bodies. Otherwise the proven bound `lower` is used.
+/// does not exceed `limit`, the travel of the offset bodies. Otherwise the proven bound `lower` is rounded down.
 pub(crate) fn safe_travel(
     t: f64,
     error: f64,
@@ -185,7 +197,7 @@ pub(crate) fn safe_travel(
     direction: DVec3,
 ) -> String {
     let length = direction.length();
-    let shown = [rounded_to_error(t, error), rounded_to_error(t * length, error * length)];
+    let shown = [estimate(t, error), estimate(t * length, error * length)];
     let limits = [limit, (1.0 - 4.0 * f64::EPSILON) * limit * length];
     let is_safe = |(text, limit): (&String, f64)| text.parse::<f64>().is_ok_and(|t| t <= limit);
     let all = shown.iter().zip(limits).all(is_safe);
@@ -197,12 +209,7 @@ pub(crate) fn safe_travel(
 fn exit_text(last: &Contact, direction: DVec3) -> String {
     let Bounded { value, upper, .. } = last.exit();
     let shown = translation_text(value, last.certificate.rounding, direction);
-    format!("{shown}; never after {}", number(upper))
-}
-
-/// Returns a proven bound with all digits, as a multiple of the direction.
-pub(crate) fn bound_text(t: f64) -> String {
-    format!("{} times the direction", number(t))
+    format!("{shown}; never after {}", at_most(upper))
 }
 
 /// Appends the translations of the first and the last contact.
@@ -220,24 +227,25 @@ fn push_range(text: &mut String, first: &Contact, last: &Contact, direction: DVe
 }
 
 /// Appends the normal, the point, the features, the bounds and the work of a contact.
-fn push_contact(text: &mut String, first: &Contact, record: &ContactRecord, direction: DVec3) {
+fn push_contact(text: &mut String, first: &Contact, context: &Context<'_>) {
+    let Context { record, direction, extent } = context;
     let proof = &first.certificate;
     push_line(text, "normal", &unit_vector(first.normal));
-    if let Some(point) = record.point {
-        let point = DVec3::from_array(point);
-        push_line(text, "point", &known_vector(point, proof.rounding * direction.length()));
+    if let Some(place) = record.point {
+        let error = proof.rounding * direction.length();
+        push_line(text, "point", &point(place.into(), error, *extent));
     }
     push_features(text, record.features.as_ref(), [None; 2]);
     let bounds = if proof.upper.is_finite() {
         format!(
-            "{} to {}, gap {} (rounding alone: up to {})",
-            number(proof.lower),
-            number(proof.upper),
-            rounded_up(proof.gap()),
-            rounded_up(proof.rounding)
+            "{}; with all digits the gap is {} (rounding alone: up to {})",
+            interval([proof.lower, proof.upper]),
+            error_bound(proof.gap()),
+            error_bound(proof.rounding)
         )
     } else {
-        format!("at least {}; rounding does not resolve whether they touch", number(proof.lower))
+        let bounds = interval([proof.lower, proof.upper]);
+        format!("{bounds}; rounding does not resolve whether they touch")
     };
     push_line(text, "bounds", &bounds);
     push_line(text, "solver", &work_text(first.solver, first.steps));
@@ -257,11 +265,10 @@ fn push_overlap(text: &mut String, grazing: &Grazing) {
 /// Appends the margin, the normal and the work of a separation.
 fn push_separation(text: &mut String, separation: &Separated) {
     let margin = separation.certificate.margin;
-    let shown = rounded_to_error(margin, 1e-14 * margin);
     push_line(
         text,
         "margin",
-        &format!("{shown}, the gap between the projections along this normal"),
+        &format!("{}, the gap between the projections along this normal", at_least(margin)),
     );
     let normal = unit_vector(separation.certificate.normal);
     push_line(text, "normal", &format!("{normal} of the separating plane"));
@@ -270,7 +277,7 @@ fn push_separation(text: &mut String, separation: &Separated) {
 
 /// Returns the verb for bodies that touch, or come as near as the minimum gap.
 pub(crate) fn meet_verb(min_gap: Option<f64>) -> String {
-    min_gap.map_or("meet".into(), |gap| format!("come as near as {}", number(gap)))
+    min_gap.map_or("meet".into(), |gap| format!("come as near as {}", length_down(gap)))
 }
 
 /// Returns the statement about bodies that are free throughout a motion. With a tolerance they may overlap.
@@ -280,7 +287,7 @@ pub(crate) fn never_statement(record: &MotionRecord) -> String {
         None => format!("the bodies never {meet}"),
         // Only proofs of convex bodies have planes: their tolerance is a depth. Solids are offset.
         Some(depth) if record.planes.is_some() => {
-            format!("the bodies never overlap by more than {}", number(depth))
+            format!("the bodies never overlap by more than {}", length_up(depth))
         }
         Some(_) => {
             format!("the bodies, each offset inwards by half of the tolerance, never {meet}")
@@ -292,7 +299,7 @@ pub(crate) fn never_statement(record: &MotionRecord) -> String {
 pub(crate) fn push_min_gap(text: &mut String, min_gap: Option<f64>) {
     if let Some(gap) = min_gap {
         let what = "at which the bodies count as meeting";
-        push_line(text, "minimum gap", &format!("{}, {what}", number(gap)));
+        push_line(text, "minimum gap", &format!("{}, {what}", length_down(gap)));
     }
 }
 
@@ -403,34 +410,9 @@ pub(crate) fn push_start_overlaps(text: &mut String, overlaps: &[StartOverlapRec
         let [moving, fixed] =
             [moving, fixed].map(|name| escape_line(name.as_deref().unwrap_or_default()));
         let remedy = match least_tolerance {
-            Some(least) => {
-                format!("a tolerance of {} would separate them", rounded_up_to_four_digits(*least))
-            }
+            Some(least) => format!("a tolerance of {} would separate them", length_up(*least)),
             None => "no tolerance would separate them".into(),
         };
         push_line(text, name, &format!("{moving} in {fixed}: {remedy}"));
-    }
-}
-
-/// Returns a value rounded up to four significant digits.
-fn rounded_up_to_four_digits(value: f64) -> String {
-    let short: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    let step: f64 = format!("1e{}", decade(value) - 3).parse().unwrap_or(0.0);
-    let rounded = if short >= value { short } else { short + step };
-    let shown: f64 = format!("{rounded:.3e}").parse().unwrap_or(rounded);
-    number(if shown >= value { shown } else { value })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn suggested_tolerance_is_rounded_up() {
-        for value in [0.1, 0.12345, 0.999_96, 7.0, 1e-7 / 3.0, 2.0 / 3.0, 123_456.7] {
-            let shown: f64 = rounded_up_to_four_digits(value).parse().unwrap();
-            assert!(shown >= value && shown <= value * 1.002, "{value} as {shown}");
-        }
-        assert_eq!(rounded_up_to_four_digits(0.25), "0.25");
     }
 }

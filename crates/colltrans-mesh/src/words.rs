@@ -43,19 +43,50 @@ pub fn six_digits(value: f64) -> String {
     rounded_to_error(value, value.abs() * 1e-5)
 }
 
-/// Formats an error or a tolerance with one digit, rounded up in magnitude.
-pub fn rounded_up(value: f64) -> String {
+/// Formats an error or a tolerance with one digit and an exponent, rounded up in magnitude.
+pub fn error_bound(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return number(value);
     }
-    let nearest = format!("{value:.0e}");
-    let shown: f64 = nearest.parse().unwrap_or(value);
-    if shown.abs() >= value.abs() {
-        return nearest;
+    format!("{:e}", round_up(value.abs(), 1).copysign(value))
+}
+
+/// Returns the least number of at most this many significant decimal digits that is not less than the value. It is
+/// infinite beyond the largest number. Infinities and NaN are returned unchanged.
+pub fn round_up(value: f64, digits: usize) -> f64 {
+    if value < 0.0 { -round_down(-value, digits) } else { decimals_around(value, digits)[1] }
+}
+
+/// Returns the largest number of at most this many significant decimal digits that does not exceed the value. Infinities
+/// and NaN are returned unchanged.
+pub fn round_down(value: f64, digits: usize) -> f64 {
+    if value < 0.0 { -round_up(-value, digits) } else { decimals_around(value, digits)[0] }
+}
+
+/// Returns the neighbours of a number that is not negative among the numbers with this many significant decimal digits.
+/// Both are the number itself if it has no more digits. Each decimal number is compared as the nearest `f64`.
+fn decimals_around(value: f64, digits: usize) -> [f64; 2] {
+    if value == 0.0 || !value.is_finite() {
+        return [value; 2];
     }
-    // The value was rounded down. Adding half a unit of the digit makes the rounding go up.
-    let half: f64 = format!("5e{}", decade(value) - 1).parse().unwrap_or(0.0);
-    format!("{:.0e}", value + half.copysign(value))
+    let digits = digits.clamp(1, 17);
+    let nearest = format!("{value:.*e}", digits - 1);
+    let (mantissa, power) = nearest.split_once('e').unwrap_or((&nearest, "0"));
+    let units: u64 = mantissa.replace('.', "").parse().unwrap_or(0);
+    let place = power.parse::<i32>().unwrap_or(0) - (digits as i32 - 1);
+    let decimal =
+        |units: u64, place: i32| -> f64 { format!("{units}e{place}").parse().unwrap_or(f64::NAN) };
+    let shown = decimal(units, place);
+    if shown == value {
+        [shown; 2]
+    } else if shown < value {
+        [shown, decimal(units + 1, place)]
+    } else if units == 10_u64.pow(digits as u32 - 1) {
+        // The next smaller number has a smaller exponent, therefore its last digit has another place.
+        [decimal(10 * units - 1, place - 1), shown]
+    } else {
+        [decimal(units - 1, place), shown]
+    }
 }
 
 /// Returns the decimal exponent of a finite number other than 0. It is exact, unlike the logarithms of the
@@ -91,8 +122,27 @@ mod tests {
             (1e-6, "1e-6"),
             (-1.2, "-2e0"),
         ] {
-            assert_eq!(rounded_up(value), shown);
+            assert_eq!(error_bound(value), shown);
         }
+    }
+
+    #[test]
+    fn directed_rounding_encloses_the_value() {
+        for (value, digits, down, up) in [
+            (7.0, 3, 7.0, 7.0),
+            (1.0 / 3.0, 3, 0.333, 0.334),
+            (-1.0 / 3.0, 3, -0.334, -0.333),
+            (9.996, 3, 9.99, 10.0),
+            (0.099_96, 3, 0.0999, 0.1),
+            (12.000_000_000_001_384, 9, 12.0, 12.000_000_1),
+            (6.999_999_999_999_279, 9, 6.999_999_99, 7.0),
+            (5e-324, 1, 5e-324, 5e-324),
+            (f64::MAX, 3, 1.79e308, f64::INFINITY),
+            (f64::INFINITY, 3, f64::INFINITY, f64::INFINITY),
+        ] {
+            assert_eq!([round_down(value, digits), round_up(value, digits)], [down, up], "{value}");
+        }
+        assert!(round_up(f64::NAN, 3).is_nan());
     }
 
     #[test]
@@ -134,6 +184,6 @@ mod tests {
     #[test]
     fn signed_zeros_print_as_zero() {
         assert_eq!([0.0, -0.0].map(number), ["0", "0"]);
-        assert_eq!([0.0, -0.0].map(rounded_up), ["0", "0"]);
+        assert_eq!([0.0, -0.0].map(error_bound), ["0", "0"]);
     }
 }

@@ -113,7 +113,7 @@ fn mesh_files() -> String {
 
 /// Returns the topic `colltrans help files`.
 pub(crate) fn files_topic() -> String {
-    fit_to_terminal(&[&mesh_files(), UNITS_AND_POSES, BODIES, LISTS, MANIFEST, EXIT_CODES])
+    fit_to_terminal(&[&mesh_files(), UNITS_AND_POSES, NUMBERS, BODIES, LISTS, MANIFEST, EXIT_CODES])
 }
 
 /// Returns the topic `colltrans help json`.
@@ -136,6 +136,14 @@ quaternion with few digits is normalised, with a note. A quarter turn about z, t
 0,0,1,0,0,0.7071067811865476,0.7071067811865476. --moving-rpy takes angles in degrees instead: about
 the world's x axis, then y, then z (as in URDF), through the origin of the mesh, before the
 translation. Multiples of 90 are exact.";
+
+const NUMBERS: &str = "\
+Numbers: text has the digits that are known, at most nine; JSON, tables and proofs have all digits.
+An interval is its middle ± half its width, or its two ends if the half width is more than a
+hundredth of the middle. It contains the proven interval. Lower bounds, distances that are safe to
+move by and minimum gaps are rounded down. Upper bounds are rounded up, and so are tolerances, to
+six digits. Points are rounded at 1e-7 of the extent of the smaller body, the components of unit
+vectors at 1e-7.";
 
 const BODIES: &str = "\
 Bodies:
@@ -283,7 +291,8 @@ With --json one object:
                    border, in radians; pieces are convex polygons that together form the region
   arcs points      free directions without a region around them: [[from, to],...], [[x,y,z],...]
   also_free        free directions in undecided cells, found by casts: [[x,y,z],...]
-  blocked_by       [{\"moving\", \"fixed\", \"share\"}] of several files: lower bounds of what they block
+  blocked_by       [{\"moving\", \"fixed\", \"share\"}] of several files: the share of the blocked
+                   cells that are attributed to them, not a bound of what they block
   tolerance        the tolerance used, a length
   cells undecided_cells   number of cells of the sphere in the proof, and of undecided ones
   start_overlaps   of bodies that overlap: as for `clearance`

@@ -16,7 +16,7 @@ use crate::args::AssemblyArguments;
 use crate::directions;
 use crate::failure::{Failure, note, print, print_json};
 use crate::inputs::check_output_path;
-use crate::numbers::count_text;
+use crate::numbers::{count_text, estimate, length_down, length_up, vector};
 use crate::outputs::{FileNames, Outputs};
 use crate::terminal::{escape_json, escape_line};
 
@@ -134,11 +134,12 @@ fn summary_text(findings: &Analysis) -> String {
     let assembly = findings.bodies.assembly();
     let names = |parts: &[usize]| escape_line(name_list(&assembly.part_names(parts)));
     let fit = match findings.bodies.fit() {
-        Fit::Tolerance(length) => format!("tolerance {length}"),
+        Fit::Tolerance(length) => format!("tolerance {}", length_up(length)),
         Fit::Chords { largest, .. } => {
+            let largest = length_up(largest);
             format!("tolerance of each pair by its chord errors, {largest} at most")
         }
-        Fit::MinGap(length) => format!("minimum gap {length}"),
+        Fit::MinGap(length) => format!("minimum gap {}", length_down(length)),
     };
     let mut text = format!("{}, {fit}\n", count_text(assembly.parts().len(), "part", "parts"));
     for (k, p) in assembly.parts().iter().enumerate() {
@@ -240,8 +241,8 @@ fn push_stage(text: &mut String, findings: &Analysis, stage: &Range<usize>) {
     let within =
         step.group_step.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
     let travel_text = |travel: f64, d: DVec3| match travel {
-        0.0 => format!("away along {},{},{}", d.x, d.y, d.z),
-        _ => format!("{travel} along {},{},{}", d.x, d.y, d.z),
+        0.0 => format!("away along {}", vector(d)),
+        _ => format!("{} along {}", estimate(travel, 0.0), vector(d)),
     };
     let (numbers, removed) =
         (Plan::step_numbers(stage), escape_line(removed_names(findings, stage)));
@@ -249,7 +250,9 @@ fn push_stage(text: &mut String, findings: &Analysis, stage: &Range<usize>) {
     if let (Some(turn), [screwed, rest]) = (step.first_turn(), &step.path[..]) {
         let turns = match screwed.travel {
             0.0 => format!("turn by {:.2} degrees", 360.0 * turn.turns),
-            travel => format!("unscrew, {:.2} turns, {travel}", turn.turns.abs()),
+            travel => {
+                format!("unscrew, {:.2} turns, {}", turn.turns.abs(), estimate(travel, 0.0))
+            }
         };
         let _ = writeln!(text, "{head}{turns}, then {}", travel_text(rest.travel, rest.direction));
     } else if let [_] = &step.path[..] {
@@ -257,7 +260,7 @@ fn push_stage(text: &mut String, findings: &Analysis, stage: &Range<usize>) {
         {
             (Some(d), travel) => travel_text(travel, d),
             (None, 0.0) => "away, each in its own direction".into(),
-            (None, travel) => format!("{travel} each in its own direction"),
+            (None, travel) => format!("{} each in its own direction", estimate(travel, 0.0)),
         };
         let _ = writeln!(text, "{head}{travel}");
     } else {
@@ -309,8 +312,10 @@ fn push_overlaps(text: &mut String, findings: &Analysis) {
         let depth = match (o.depth, findings.bodies.fit()) {
             (None, _) => " by more than their size".into(),
             (Some(0.0), Fit::MinGap(_)) => String::new(),
-            (Some(depth), Fit::MinGap(_)) => format!(", which overlap by {depth}"),
-            (Some(depth), _) => format!(" by {depth}"),
+            (Some(depth), Fit::MinGap(_)) => {
+                format!(", which overlap by {}", length_up(depth))
+            }
+            (Some(depth), _) => format!(" by {}", length_up(depth)),
         };
         let _ = writeln!(text, "  {a}, {b}{depth}");
     }
@@ -329,7 +334,8 @@ fn push_overlaps(text: &mut String, findings: &Analysis) {
     {
         let _ = writeln!(
             text,
-            "  try --tolerance {tolerance} or, for curved fits, the chord errors of both parts together"
+            "  try --tolerance {} or, for curved fits, the chord errors of both parts together",
+            length_up(tolerance)
         );
     }
 }

@@ -3,11 +3,12 @@
 use colltrans::glam::DVec3;
 use colltrans::record::{Ending, Record};
 
-use crate::numbers::{known_vector, number, unit_vector};
+use crate::numbers::{
+    at_least, at_most, interval, interval_of_unit, length_up, point, unit_vector, vector,
+};
 use crate::record::Line;
 use crate::report::{
-    bound_text, overlap_hint, push_features, push_line, push_min_gap, push_start_overlaps,
-    safe_travel,
+    overlap_hint, push_features, push_line, push_min_gap, push_start_overlaps, safe_travel,
 };
 use crate::solid::Answer;
 
@@ -32,8 +33,9 @@ pub(super) fn answer_text(answer: &Answer, direction: DVec3, is_default: bool) -
         Ending::Overlapping => text.push_str("overlapping: the bodies overlap now\n"),
         _ => text.push_str("free: nothing stops the body along this direction\n"),
     }
-    if let Some([_, upper]) = record.exit_bounds {
-        push_line(&mut text, "exit", &format!("{}; after it they never meet", bound_text(upper)));
+    if let Some(bounds) = record.exit_bounds {
+        let exit = interval_of_unit(bounds, "times the direction");
+        push_line(&mut text, "exit", &format!("{exit}; after it they never meet"));
     }
     let ignored = record.outcome != Ending::Overlapping;
     let name = if ignored { "ignored" } else { "overlap" };
@@ -50,7 +52,7 @@ pub(super) fn answer_text(answer: &Answer, direction: DVec3, is_default: bool) -
         (false, true) => "as given: the nominal bodies",
         (false, false) => "as given: each body is offset inwards by half of it",
     };
-    push_line(&mut text, "tolerance", &format!("{} ({source})", number(tolerance)));
+    push_line(&mut text, "tolerance", &format!("{} ({source})", length_up(tolerance)));
     push_min_gap(&mut text, record.min_gap);
     text
 }
@@ -62,7 +64,7 @@ pub(super) fn scan_header() -> String {
 
 /// Returns the line of one direction of `--directions`.
 pub(super) fn scan_line(line: &Line, direction: DVec3) -> String {
-    let direction = direction.to_array().map(number).join(",");
+    let direction = vector(direction);
     let outcome = line.record.outcome().name().to_owned();
     let Record::SolidClearance(record) = &line.record else {
         let message = line.message.clone().unwrap_or_default();
@@ -70,9 +72,9 @@ pub(super) fn scan_line(line: &Line, direction: DVec3) -> String {
     };
     let shrunk = record.offset_distance_bounds.map(|[lower, _]| lower);
     let exit = record.exit_bounds.map(|[_, upper]| upper);
-    let or_none = |t: Option<f64>| t.map_or_else(|| "-".into(), number);
-    let [distance, shrunk, exit] = [record.distance, shrunk, exit].map(or_none);
-    join_columns(&direction, [outcome, distance, shrunk, exit])
+    let or_none = |t: Option<f64>, text: fn(f64) -> String| t.map_or_else(|| "-".into(), text);
+    let [distance, shrunk] = [record.distance, shrunk].map(|t| or_none(t, at_least));
+    join_columns(&direction, [outcome, distance, shrunk, or_none(exit, at_most)])
 }
 
 /// Joins columns with fixed widths.
@@ -86,7 +88,7 @@ fn join_columns(direction: &str, others: [String; 4]) -> String {
 fn push_contact(text: &mut String, answer: &Answer, direction: DVec3) {
     let record = &answer.record;
     let error = answer.error / direction.length();
-    if let (Some(value), Some([lower, upper]), Some(distance), Some([shrunk, _])) = (
+    if let (Some(value), Some(bounds), Some(distance), Some([shrunk, _])) = (
         record.translation,
         record.translation_bounds,
         record.distance,
@@ -95,9 +97,11 @@ fn push_contact(text: &mut String, answer: &Answer, direction: DVec3) {
         let remark = if value.abs() <= error { " (the parts touch)" } else { "" };
         let travel = safe_travel(value.max(0.0), error, [distance, shrunk], direction);
         push_line(text, "distance", &format!("{travel}{remark}"));
-        push_line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
+        push_line(text, "bounds", &interval(bounds));
         if record.tolerance > Some(0.0) {
-            push_line(text, "offset", &format!("{}, for the offset bodies", bound_text(shrunk)));
+            let shrunk = at_least(shrunk);
+            let offset = format!("{shrunk} times the direction, for the offset bodies");
+            push_line(text, "offset", &offset);
         }
     }
     push_features(
@@ -105,8 +109,8 @@ fn push_contact(text: &mut String, answer: &Answer, direction: DVec3) {
         record.features.as_ref(),
         [record.moving.as_deref(), record.fixed.as_deref()],
     );
-    if let (Some(normal), Some(point)) = (record.normal, record.point) {
+    if let (Some(normal), Some(place)) = (record.normal, record.point) {
         push_line(text, "normal", &unit_vector(normal.into()));
-        push_line(text, "point", &known_vector(point.into(), answer.error));
+        push_line(text, "point", &point(place.into(), answer.error, answer.extent));
     }
 }

@@ -6,7 +6,9 @@ use colltrans::glam::DVec3;
 use colltrans::record::{BlockedByRecord, Ending, FreeRecord, FreeRegionRecord};
 use colltrans::removal::directions::FreeArc;
 
-use crate::numbers::{count_text, number, six_digits, unit_vector};
+use crate::numbers::{
+    at_most, count_text, interval_of_unit, length_up, six_digits, unit_vector, unit_vector_within,
+};
 use crate::report::{overlap_hint, push_line, push_start_overlaps};
 use crate::terminal::escape_line;
 
@@ -33,7 +35,7 @@ pub(super) fn answer_text(record: &FreeRecord) -> String {
     }
     if let Some(tolerance) = record.tolerance {
         let how = if tolerance > 0.0 { " (each body is offset inwards by half of it)" } else { "" };
-        push_line(&mut text, "tolerance", &format!("{}{how}", number(tolerance)));
+        push_line(&mut text, "tolerance", &format!("{}{how}", length_up(tolerance)));
     }
     text
 }
@@ -129,8 +131,9 @@ fn arc_text(arc: &FreeArc) -> String {
 
 /// Describes a region of directions.
 fn region_text(region: &FreeRegionRecord) -> String {
+    let center = region.center.into();
     let mut text =
-        format!("{} around {}", percent(region.share), unit_vector(region.center.into()));
+        format!("{} around {}", percent(region.share), unit_vector_within(center, region.margin));
     let corners = &region.corners;
     let _ = write!(text, ", {} degrees from its border", six_digits(region.margin.to_degrees()));
     if corners.is_empty() {
@@ -145,7 +148,8 @@ fn region_text(region: &FreeRegionRecord) -> String {
     text
 }
 
-/// Describes the files of a blocking pair, and a lower bound of the share that it blocks.
+/// Describes the files of a blocking pair, and the share of the blocked cells that are attributed to it. The pair may block
+/// more or, if boxes inside the bodies block cells, less.
 fn blocker_text(by: &BlockedByRecord) -> String {
     let name = |name: &Option<String>| name.as_ref().map(escape_line);
     let who = match (name(&by.moving), name(&by.fixed)) {
@@ -154,7 +158,7 @@ fn blocker_text(by: &BlockedByRecord) -> String {
         (Some(moving), None) => format!("a file that blocks {moving}"),
         (None, None) => String::new(),
     };
-    format!("{who}: at least {} of all directions", percent(by.share))
+    format!("{who}: {} of all directions are attributed to it", percent(by.share))
 }
 
 /// Returns a share of all directions with its two bounds.
@@ -162,17 +166,13 @@ fn share_text([low, high]: [f64; 2]) -> String {
     if high == 0.0 {
         return "no region of directions is known to be".into();
     }
-    format!(
-        "{} of all directions (at least {}, at most {})",
-        percent(low + 0.5 * (high - low)),
-        number(low),
-        number(high)
-    )
+    let bounds = [(100.0 * low).next_down().max(0.0), (100.0 * high).next_up()];
+    interval_of_unit(bounds, "% of all directions")
 }
 
 /// Returns an upper bound of a share of all directions.
 fn at_most_share(share: f64) -> String {
-    format!("at most {} of all directions", percent(share))
+    format!("at most {} % of all directions", at_most((100.0 * share).next_up()))
 }
 
 /// Returns a share in percent, with six digits.

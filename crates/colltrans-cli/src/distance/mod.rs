@@ -14,10 +14,11 @@ use crate::body::Part;
 use crate::driver::{AnswerOutputs, OutputTargets};
 use crate::failure::{Code, Failure};
 use crate::load;
+use crate::numbers::smaller_extent;
 use crate::picture::draw_pair;
 use crate::record::Line;
 use crate::solid::{PartsPair, placed_surface};
-pub(crate) use text::distance_text;
+pub(crate) use text::{Accuracy, distance_text};
 
 pub(crate) fn run(arguments: &PlacedArguments, question: PairQuestion) -> Result<(), Failure> {
     let inputs = arguments.input_pair(question)?;
@@ -46,9 +47,11 @@ fn answer_convex(
     let answer = question.answer(&pair)?;
     let line = Line::from_record(answer.record(&pair)).with_parts(bodies);
     let surface = |k: usize, origin| placed_surface(&bodies[k].body, &poses[k], origin);
+    let accuracy =
+        || Accuracy { error: 0.0, extent: smaller_extent(bodies.map(|part| part.bounds())) };
     targets.write_answer(AnswerOutputs {
         record: &line,
-        text: || text::answer_text(question, &line, 0.0),
+        text: || text::answer_text(question, &line, accuracy()),
         proof: || Ok(answer.proof(&pair).map(|proof| proof.to_json())),
         picture: || Ok(draw_pair(&line.record, &surface)),
     })
@@ -76,7 +79,7 @@ fn answer_parts(
     let surface = |k: usize, origin| bodies[k].surface(&poses[k], origin);
     targets.write_answer(AnswerOutputs {
         record: &line,
-        text: || text::answer_text(question, &line, query.length_error()),
+        text: || text::answer_text(question, &line, query.accuracy()),
         proof: || Ok(proof?.map(|proof| proof.to_json())),
         picture: || Ok(draw_pair(&line.record, &surface)),
     })

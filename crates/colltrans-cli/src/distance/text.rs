@@ -2,29 +2,44 @@
 
 use colltrans::record::{DepthRecord, DistanceRecord, Ending, PairQuestion, Record};
 
-use crate::numbers::{known_vector, number, rounded_to_error, unit_vector};
+use crate::numbers::{
+    at_least, at_most, estimate, interval, length_down, length_up, point, unit_vector,
+};
 use crate::record::Line;
 use crate::report::{push_features, push_hulls, push_line, push_start_overlaps};
 
-/// Returns the answer. Lengths are known to within `error`.
-pub(super) fn answer_text(question: PairQuestion, line: &Line, error: f64) -> String {
+/// Accuracy of the numbers of an answer.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Accuracy {
+    /// Error of lengths.
+    pub(crate) error: f64,
+    /// Extent of the smaller body, by which points are rounded.
+    pub(crate) extent: f64,
+}
+
+/// Returns the answer.
+pub(super) fn answer_text(question: PairQuestion, line: &Line, accuracy: Accuracy) -> String {
     let mut text = match &line.record {
-        Record::Distance(record) => distance_text(question, record, error),
-        Record::Depth(record) => depth_text(record, error),
+        Record::Distance(record) => distance_text(question, record, accuracy),
+        Record::Depth(record) => depth_text(record, accuracy.error),
         other => format!("{}\n", other.outcome()),
     };
     push_hulls(&mut text, line.hull, line.record.outcome(), question == PairQuestion::Depth);
     text
 }
 
-/// Returns the answer of a distance, or of its comparison with a length. Lengths are known to within `error`.
-pub(crate) fn distance_text(question: PairQuestion, record: &DistanceRecord, error: f64) -> String {
+/// Returns the answer of a distance, or of its comparison with a length.
+pub(crate) fn distance_text(
+    question: PairQuestion,
+    record: &DistanceRecord,
+    accuracy: Accuracy,
+) -> String {
     let mut text = format!("{}\n", headline(question, record.outcome));
-    push_bounds(&mut text, "distance", [record.lower, record.upper], error);
+    push_bounds(&mut text, "distance", [record.lower, record.upper], accuracy.error);
     if let Some(normal) = record.normal {
         push_line(&mut text, "normal", &unit_vector(normal.into()));
     }
-    push_nearest_points(&mut text, record, error);
+    push_nearest_points(&mut text, record, accuracy);
     push_open_surfaces(&mut text, &record.surfaces);
     text
 }
@@ -50,15 +65,15 @@ fn depth_text(record: &DepthRecord, error: f64) -> String {
 
 /// Returns the first line of the answer.
 fn headline(question: PairQuestion, outcome: Ending) -> String {
-    let within = |what: &str| match question {
-        PairQuestion::Within(length) => format!("{outcome}: {what} {}", number(length)),
+    let within = |what: &str, text_of: fn(f64) -> String| match question {
+        PairQuestion::Within(length) => format!("{outcome}: {what} {}", text_of(length)),
         _ => outcome.to_string(),
     };
     match outcome {
         Ending::Meeting => "meeting: the bodies touch or overlap; `depth` computes how deep".into(),
-        Ending::Closer => within("the bodies are no farther apart than"),
-        Ending::Farther => within("the bodies are farther apart than"),
-        Ending::Undecided => within("between the bounds of the distance is"),
+        Ending::Closer => within("the bodies are no farther apart than", length_up),
+        Ending::Farther => within("the bodies are farther apart than", length_down),
+        Ending::Undecided => within("between the bounds of the distance is", length_down),
         outcome => outcome.to_string(),
     }
 }
@@ -70,25 +85,23 @@ fn push_bounds(text: &mut String, name: &str, [lower, upper]: [Option<f64>; 2], 
         (Some(lower), Some(upper)) => {
             if lower > 0.0 {
                 let value = lower + 0.5 * (upper - lower);
-                push_line(text, name, &rounded_to_error(value, error.max(upper - lower)));
+                push_line(text, name, &estimate(value, error.max(upper - lower)));
             }
-            push_line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
+            push_line(text, "bounds", &interval([lower, upper]));
         }
-        (None, Some(upper)) => push_line(text, "at most", &number(upper)),
+        (None, Some(upper)) => push_line(text, "at most", &at_most(upper)),
         (lower, None) => {
             if let Some(lower) = lower.filter(positive) {
-                push_line(text, "at least", &number(lower));
+                push_line(text, "at least", &at_least(lower));
             }
         }
     }
 }
 
 /// Appends the nearest points and their features.
-fn push_nearest_points(text: &mut String, record: &DistanceRecord, error: f64) {
-    let rounding = record.points.map_or(0.0, |points| {
-        1e-14 * points.as_flattened().iter().fold(0.0_f64, |most, c| most.max(c.abs()))
-    });
-    let point = |p: [f64; 3]| known_vector(p.into(), error.max(rounding));
+fn push_nearest_points(text: &mut String, record: &DistanceRecord, accuracy: Accuracy) {
+    let Accuracy { error, extent } = accuracy;
+    let point = |p: [f64; 3]| point(p.into(), error, extent);
     match record.points {
         Some([moving, _]) if record.outcome == Ending::Meeting => {
             push_line(text, "point", &point(moving));

@@ -14,9 +14,11 @@ use serde::Deserialize;
 
 use crate::args::{BodyArguments, BodyMode};
 use crate::batch::{Batch, BodySource, Cache, PoseSource, Shape, syntax_error_message};
-use crate::body::{self, can_be_part, load_error_message};
+use crate::body::{self, can_be_part, convex_bounds, load_error_message};
+use crate::distance::Accuracy;
 use crate::failure::{Code, Failure};
 use crate::inputs::{ReplacedFile, is_obstacle_list, read_text};
+use crate::numbers::smaller_extent;
 use crate::solid::Body;
 
 /// Rounding error of a length, relative to the size of the scene.
@@ -125,13 +127,17 @@ impl Scene {
     }
 
     /// Returns the error of lengths about an obstacle: the precision of the files, and rounding. 0 for convex bodies.
-    pub(super) fn length_error(&self, pose: Pose, obstacle: ObstacleId) -> f64 {
-        let Some((body, obstacle_pose)) = self.obstacles.get(obstacle) else { return 0.0 };
+    pub(super) fn accuracy(&self, pose: Pose, obstacle: ObstacleId) -> Accuracy {
+        let Some((body, obstacle_pose)) = self.obstacles.get(obstacle) else {
+            return Accuracy { error: 0.0, extent: 0.0 };
+        };
+        let extent = smaller_extent([&self.moving.body, body].map(bounds_of));
         if let (AnyBody::Convex(_), AnyBody::Convex(_)) = (&self.moving.body, body) {
-            return 0.0;
+            return Accuracy { error: 0.0, extent };
         }
         let size = max_coordinate(&self.moving.body, pose).max(max_coordinate(body, obstacle_pose));
-        self.moving.precision + self.precisions[obstacle.0 as usize] + RELATIVE_ROUNDING * size
+        let precision = self.moving.precision + self.precisions[obstacle.0 as usize];
+        Accuracy { error: precision + RELATIVE_ROUNDING * size, extent }
     }
 }
 
@@ -231,13 +237,16 @@ fn as_solid(placed: AnyPlaced<'_>) -> Result<Placed<'_, Solid>, QueryError> {
     })
 }
 
+/// Returns the bounding box of a body.
+fn bounds_of(body: &AnyBody) -> Aabb {
+    match body {
+        AnyBody::Convex(body) => convex_bounds(body),
+        AnyBody::Solid(body) => body.bounds(),
+    }
+}
+
 /// Returns an upper bound of the coordinates of a placed body.
 fn max_coordinate(body: &AnyBody, pose: Pose) -> f64 {
-    let Aabb { low, high } = match body {
-        AnyBody::Convex(body) => {
-            body.vertices().iter().fold(Aabb::EMPTY, |all, &v| all.union(&Aabb { low: v, high: v }))
-        }
-        AnyBody::Solid(body) => body.bounds(),
-    };
+    let Aabb { low, high } = bounds_of(body);
     low.length().max(high.length()) + pose.translation().length()
 }

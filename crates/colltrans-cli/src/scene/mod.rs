@@ -70,12 +70,12 @@ pub(crate) fn answer_placed(
     }
     // The scene has a file, and each file at least one obstacle.
     let found = query.nearest()?.ok_or(Failure::new(Code::Input, "the scene has no obstacles"))?;
-    let error = scene.length_error(request.pose, found.obstacle);
+    let accuracy = scene.accuracy(request.pose, found.obstacle);
     let mut record = NearestRecord::from_nearest(&found, &query);
     record.fixed = scene.name(found.obstacle);
     let prove = || ProofFile::of_nearest(&query);
     let line = scene.line_of(record, Some(found.obstacle));
-    write_answer(targets, &line, |record| text::nearest_text(record, error), prove)
+    write_answer(targets, &line, |record| text::nearest_text(record, accuracy), prove)
 }
 
 /// Answers `colltrans clearance` for a scene.
@@ -108,11 +108,11 @@ pub(crate) fn answer_clearance(arguments: &ClearanceArguments) -> Result<(), Fai
     let mut record = SceneClearanceRecord::from_clearance(&found, &query, direction);
     let obstacle = record.obstacle;
     (record.tolerance, record.fixed) = (tolerance, obstacle.and_then(|id| scene.name(id)));
-    let error = obstacle.map_or(0.0, |obstacle| scene.length_error(request.pose, obstacle));
+    let accuracy = obstacle.map(|obstacle| scene.accuracy(request.pose, obstacle));
     let is_default = arguments.tolerance.is_none();
     let graze = arguments.pair.graze_tolerance;
     let answer_text = |record: &_| {
-        text::clearance_text(record, direction, error, is_default) + &text::graze_line(graze)
+        text::clearance_text(record, direction, accuracy, is_default) + &text::graze_line(graze)
     };
     let prove = || ProofFile::of_scene_clearance(&query, direction).map(Some);
     write_answer(targets, &scene.line_of(record, obstacle), answer_text, prove)

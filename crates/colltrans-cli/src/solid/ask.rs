@@ -6,7 +6,7 @@ use colltrans::solid::{SolidCast, SolidOverlap, StartOverlap};
 use colltrans::{Cast, Pose, ProofFile, QueryError, Solid};
 use colltrans_mesh::body::cast_between;
 
-use super::{Body, Piece, renumber_features};
+use super::{Body, Piece, extent, renumber_features};
 use crate::failure::{Code, Failure};
 
 /// Rounding error of a length, relative to the size of the scene.
@@ -34,6 +34,8 @@ pub(crate) struct Answer {
     pub(crate) notes: Vec<String>,
     /// Error of lengths: the precision of the files, and rounding.
     pub(crate) error: f64,
+    /// Extent of the smaller body.
+    pub(crate) extent: f64,
 }
 
 impl<'a> PartsQuery<'a> {
@@ -67,7 +69,8 @@ impl<'a> PartsQuery<'a> {
         {
             (record.moving, record.fixed) = (deepest.moving.clone(), deepest.fixed.clone());
         }
-        Ok(Answer { record, notes: self.offset_notes(tolerance), error: self.length_error() })
+        let notes = self.offset_notes(tolerance);
+        Ok(Answer { record, notes, error: self.length_error(), extent: extent(self.bodies) })
     }
 
     /// Returns the error of lengths: the precision of the files, and rounding.

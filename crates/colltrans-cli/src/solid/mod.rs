@@ -22,7 +22,7 @@ use colltrans_mesh::body::{self, BodyError, BodyOptions, Loaded, Note, load_soli
 
 use crate::body::{load_error_message, note_of_file, option_hint};
 use crate::failure::{Code, Failure};
-use crate::numbers::count_text;
+use crate::numbers::{count_text, error_bound, smaller_extent};
 pub(crate) use ask::{Answer, PartsQuery};
 pub(crate) use free::{DirectionsAnswer, PartsDirections};
 pub(crate) use motion::PartsMotion;
@@ -144,9 +144,10 @@ pub(crate) fn query_failure(
     let sizes = pieces.map(|piece| (largest(piece), &piece.file));
     let Some((size, file)) = sizes.max_by(|a, b| a.0.total_cmp(&b.0)) else { return error.into() };
     let text = format!(
-        "{}: coordinates up to {size:e}, whose rounding determines the default tolerance; {error}. Check the unit of \
-         the file, or give --tolerance",
-        file.display()
+        "{}: coordinates up to {}, whose rounding determines the default tolerance; {error}. Check the unit of the \
+         file, or give --tolerance",
+        file.display(),
+        error_bound(size)
     );
     Failure::new(Code::Input, text)
 }
@@ -204,6 +205,11 @@ fn shell_counts(report: &SolidReport) -> String {
         let _ = write!(text, " (not counted in {shells} that touch themselves)");
     }
     text
+}
+
+/// Returns the extent of the smaller body.
+pub(crate) fn extent(bodies: [&Body; 2]) -> f64 {
+    smaller_extent(bodies.map(|body| body.solid().bounds()))
 }
 
 /// Renumbers the vertices of features as in their files. Returns the names of the two files; `None` without features.

@@ -3,7 +3,7 @@
 use colltrans::record::{Ending, PairQuestion, Record};
 use colltrans::{Pair, Pose, ProofFile, ProofFileError, QueryError, Solid};
 
-use super::{Body, PartsQuery, renumber_features};
+use super::{Body, PartsQuery, extent, renumber_features};
 use crate::failure::{Code, Failure};
 
 /// The proof, `None` if the answer has none, or the failure of computing it.
@@ -60,9 +60,9 @@ impl<'a> PartsPair<'a> {
         Ok(record)
     }
 
-    /// Returns the error of lengths: the precision of the files, and rounding.
-    pub(crate) fn length_error(&self) -> f64 {
-        self.parts_query().length_error()
+    /// Returns the accuracy of the answer.
+    pub(crate) fn accuracy(&self) -> Accuracy {
+        Accuracy { error: self.parts_query().length_error(), extent: extent(self.bodies) }
     }
 
     /// Returns the pair of the library.

@@ -5,7 +5,7 @@ use std::fmt;
 use colltrans::solid::SolidReport;
 
 use super::Excess;
-use crate::words::{count_text, rounded_up, six_digits};
+use crate::words::{count_text, error_bound, six_digits};
 use crate::{Merged, Mesh};
 
 /// A repair of the mesh, or another difference between the body and the file. `Display` writes a text without
@@ -193,7 +193,7 @@ fn write_open_surface(
 impl fmt::Display for Merged {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let which = count_text(self.vertices, "vertex", "vertices");
-        let (far, tolerance) = (rounded_up(self.largest_distance), rounded_up(self.tolerance));
+        let (far, tolerance) = (error_bound(self.largest_distance), error_bound(self.tolerance));
         write!(f, "{which} on open edges merged with another, at most {far} away")?;
         write!(f, " (tolerance {tolerance})")?;
         if self.dropped_faces > 0 {

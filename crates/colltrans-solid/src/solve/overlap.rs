@@ -11,6 +11,7 @@
 //! open shells, points and segments ([`thin`]): `docs/theory/solid-overlap.md`.
 
 use std::cmp::Ordering;
+use std::fmt;
 
 use glam::DVec3;
 
@@ -43,8 +44,33 @@ pub enum Overlap {
     FixedInside(u32),
 }
 
-/// Finds a place where the interiors intersect or an open shell passes through the other body. With a minimum gap,
-/// finds two facets that are certainly nearer than the gap, or a shell inside the other body. `None` if there is no
+impl fmt::Display for Overlap {
+    /// Writes a noun phrase with the positions of triangles, counted from 0.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Facets(moving, fixed) => {
+                write!(
+                    f,
+                    "triangle {moving} of the moving body and triangle {fixed} of the fixed body"
+                )
+            }
+            Self::MovingInside(triangle) => {
+                write!(
+                    f,
+                    "the shell of the moving body with triangle {triangle}, inside the fixed body"
+                )
+            }
+            Self::FixedInside(triangle) => {
+                write!(
+                    f,
+                    "the shell of the fixed body with triangle {triangle}, inside the moving body"
+                )
+            }
+        }
+    }
+}
+
+/// Finds a place where the interiors intersect or an open shell passes through the other body; `None` if there is no
 /// such place.
 #[inline]
 pub fn find_overlap(scene: &PairFrame, steps: &mut SolidSteps) -> Option<Overlap> {

@@ -150,7 +150,9 @@ fn read_directions(file: &Path) -> Result<Vec<DVec3>, Failure> {
         found.push(direction);
     }
     if found.is_empty() {
-        return Err(input("contains no directions".into()));
+        return Err(input(
+            "contains no directions; expected one per line, x,y,z or an axis".into(),
+        ));
     }
     Ok(found)
 }

@@ -203,7 +203,8 @@ fn first_of_pairs(
         }
     }
     // The command line has at least one mesh on each side.
-    let mut first = first.ok_or_else(|| Failure::new(Code::Usage, "no meshes"))?;
+    let mut first =
+        first.ok_or_else(|| Failure::new(Code::Usage, "give a moving and a fixed mesh"))?;
     let is_open = matches!(first.line.record.outcome, Ending::Grazing | Ending::Undecided);
     if let (true, Some((upper, [i, j]))) = (is_open, least_upper) {
         // A pair without a proven contact may come first although another pair is proven to meet later.

@@ -190,7 +190,7 @@ fn fixed_joints(given: &[String]) -> Result<BTreeMap<String, f64>, Failure> {
             return Err(invalid("expected NAME=VALUE, in radians or metres"));
         };
         if joints.insert(name.trim().to_owned(), value).is_some() {
-            return Err(invalid("this joint has two values"));
+            return Err(invalid("this joint already has a value; give one --joint for each"));
         }
     }
     Ok(joints)
@@ -240,8 +240,8 @@ fn xml_escaped(value: &str) -> String {
 /// Returns the extent of the smallest body.
 fn smallest_extent(cast: &PathCast<'_>) -> f64 {
     smaller_extent(cast.bodies().map(|placed| match placed {
-        AnyPlaced::Convex(placed) => convex_bounds(placed.body()),
-        AnyPlaced::Solid(placed) => placed.body().bounds(),
+        AnyPlaced::Convex(placed) => convex_bounds(placed.body),
+        AnyPlaced::Solid(placed) => placed.body.bounds(),
     }))
 }
 

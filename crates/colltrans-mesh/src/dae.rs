@@ -54,7 +54,12 @@ pub(crate) fn parse_dae(bytes: &[u8]) -> Result<Mesh, Fault> {
     } else {
         let library = root.first_child("library_visual_scenes");
         let first = library.and_then(|library| library.first_child("visual_scene"));
-        first.ok_or_else(|| error_at(&root, "the file has no scene"))?
+        first.ok_or_else(|| {
+            error_at(
+                &root,
+                "the file has no scene, so it places no geometry; export it with a scene",
+            )
+        })?
     };
     for node in scene.children_named("node") {
         reader.add_node(node, DAffine3::IDENTITY, 0, &mut mesh)?;

@@ -258,7 +258,9 @@ impl Row {
     /// Returns the vertex indices of face `index`, or an error if one is out of range.
     fn checked_corners(self, index: usize, vertex_count: usize) -> Result<Vec<u32>, Fault> {
         let Some(corners) = self.corners else {
-            return Err(Fault::new(Place::Face(index), "negative vertex index"));
+            let accepted = vertex_count.saturating_sub(1);
+            let what = format!("a vertex index is negative; accepted: 0 to {accepted}");
+            return Err(Fault::new(Place::Face(index), what));
         };
         match corners.iter().find(|&&v| v as usize >= vertex_count) {
             Some(vertex) => Err(Fault::new(

@@ -441,7 +441,7 @@ impl Reader<'_> {
         let refused = |reason: String| contents_error(self.path, format!("node {index}"), reason);
         let document = self.document;
         let node = document.nodes.get(index);
-        let node = node.ok_or_else(|| refused("no such node".into()))?;
+        let node = node.ok_or_else(|| refused(unknown("node", index, document.nodes.len())))?;
         if depth > MAX_DEPTH {
             return Err(refused(format!(
                 "nodes are nested deeper than {MAX_DEPTH}, or in a cycle"
@@ -459,7 +459,8 @@ impl Reader<'_> {
         }
         if let Some(mesh) = node.mesh {
             let shape = document.meshes.get(mesh);
-            let shape = shape.ok_or_else(|| refused(format!("no such mesh {mesh}")))?;
+            let shape =
+                shape.ok_or_else(|| refused(unknown("mesh", mesh, document.meshes.len())))?;
             if let Some(name) = node.extensions.keys().find(|name| name.contains("instancing")) {
                 return Err(refused(format!(
                     "instances of {name} are not supported; save the copies as nodes"
@@ -553,8 +554,9 @@ impl Reader<'_> {
         what: &'static str,
         shape: &str,
     ) -> Result<AccessorValues<'_>, String> {
-        let missing = || format!("no such accessor {index} of {what}");
-        let accessor = self.document.accessors.get(index).ok_or_else(missing)?;
+        let accessors = &self.document.accessors;
+        let missing = || format!("{what}: {}", unknown("accessor", index, accessors.len()));
+        let accessor = accessors.get(index).ok_or_else(missing)?;
         if accessor.shape != shape {
             return Err(format!("{what} have type {}, expected {shape}", accessor.shape));
         }
@@ -586,8 +588,9 @@ impl Reader<'_> {
         size: usize,
         what: &str,
     ) -> Result<(&[u8], usize), String> {
-        let missing = || format!("no such buffer view {view} of {what}");
-        let view = self.document.buffer_views.get(view).ok_or_else(missing)?;
+        let views = &self.document.buffer_views;
+        let missing = || format!("{what}: {}", unknown("buffer view", view, views.len()));
+        let view = views.get(view).ok_or_else(missing)?;
         let stride = view.byte_stride.unwrap_or(size);
         if stride < size {
             return Err(format!(
@@ -799,4 +802,9 @@ fn primitive_triangles(mode: u32, indices: &[u32]) -> Result<Vec<[u32; 3]>, Stri
         },
         _ => return Err(format!("unknown primitive mode {mode}; accepted: 0 to 6")),
     })
+}
+
+/// Returns the message that the document has no object of a kind with an index.
+fn unknown(kind: &str, index: usize, count: usize) -> String {
+    format!("unknown {kind} {index}; the file has {count}, numbered from 0")
 }

@@ -248,13 +248,13 @@ impl<'a> Package<'a> {
         let name =
             self.find_file(path).ok_or_else(|| refused("the package has no such file".into()))?;
         let file =
-            self.archive.by_name(&name).map_err(|e| refused(format!("cannot unpack: {e}")))?;
+            self.archive.by_name(&name).map_err(|e| refused(format!("cannot be unpacked: {e}")))?;
         let mut bytes = Vec::new();
         // The size in the header of the archive is not trusted.
         let limit = self.left;
         file.take(limit + 1)
             .read_to_end(&mut bytes)
-            .map_err(|e| refused(format!("cannot unpack: {e}")))?;
+            .map_err(|e| refused(format!("cannot be unpacked: {e}")))?;
         if bytes.len() as u64 > limit {
             return Err(refused(format!(
                 "the package unpacks to more than the accepted {MAX_RATIO} times its size, or {MAX_BYTES} bytes"
@@ -545,7 +545,11 @@ impl Parser {
         }
         let attributes = Attributes::parse(tag, resolver)?;
         match name {
-            "object" if self.current.is_some() => return Err("nested object elements".into()),
+            "object" if self.current.is_some() => {
+                return Err(
+                    "an object is nested in another object; place it beside that one".into()
+                );
+            }
             "object" => {
                 let id = attributes.required("id")?.to_owned();
                 let name = attributes.get("name").map(str::to_owned);

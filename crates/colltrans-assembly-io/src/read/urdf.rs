@@ -12,7 +12,11 @@ use super::shapes::Round;
 use super::{Budget, Draft, Geometry, Placed, assemble, contents_error, parse_mesh, shapes};
 use crate::error::ReadError;
 use colltrans_assembly::{Assembly, Piece};
+use colltrans_mesh::words::first_named;
 use colltrans_mesh::xml::Element;
+
+/// Maximum number of names that an error lists.
+const MAX_NAMES: usize = 12;
 
 /// Reads the parts of a URDF file.
 pub(super) fn read_urdf(source: Source) -> Result<Assembly, ReadError> {
@@ -245,7 +249,12 @@ pub(super) fn read_joints<'a>(
             )));
         }
         if !joints.contains_key(name.as_str()) {
-            return Err(refused(format!("unknown joint {name}")));
+            let mut known: Vec<&str> = joints.keys().copied().collect();
+            known.sort_unstable();
+            return Err(refused(format!(
+                "unknown joint {name}; known joints: {}",
+                first_named(&known, MAX_NAMES)
+            )));
         }
     }
     Ok(joints)
@@ -273,11 +282,13 @@ pub(super) fn link_poses<'a>(
         let Joint { parent, child, .. } = joints[joint];
         for link in [parent, child] {
             if !links.contains_key(link) {
-                return Err(refused(format!("unknown link {link}")));
+                return Err(refused(format!("unknown link {link}; add a link of this name")));
             }
         }
         if links.insert(child, Some((joint, &joints[joint]))).flatten().is_some() {
-            return Err(refused(format!("link {child} already is the child of another joint")));
+            return Err(refused(format!(
+                "link {child} already is the child of another joint; a link has one parent"
+            )));
         }
     }
     let mut places: HashMap<&str, DAffine3> = HashMap::new();
@@ -296,7 +307,7 @@ pub(super) fn link_poses<'a>(
                 return Err(contents_error(
                     source.path,
                     format!("link {link}"),
-                    "its joints form a cycle",
+                    "its joints form a cycle; they must form a tree",
                 ));
             }
             above.push((joint, found));
@@ -333,7 +344,9 @@ fn joint_motion(
         "revolute" | "continuous" | "fixed" | "floating" | "planar" | "spherical" => {
             Ok(DAffine3::IDENTITY)
         }
-        other => Err(format!("unknown type {other}")),
+        other => Err(format!(
+            "unknown type {other}; accepted: fixed, revolute, continuous, prismatic, floating, planar, spherical"
+        )),
     }
 }
 

@@ -73,11 +73,17 @@ pub(super) fn with_roles(
             let (names, tolerance) = match value.rsplit_once('=').filter(|_| accepts_tolerance) {
                 Some((names, length)) => {
                     let length = length.trim().parse();
-                    let refused = |_| usage_failure(format!("{flag} {value}: expected A,B=L"));
+                    let refused = |_| {
+                        usage_failure(format!(
+                            "{flag} {value}: expected two names and a tolerance, A,B=L"
+                        ))
+                    };
                     (names, Some(length.map_err(refused)?))
                 }
                 None if requires_tolerance => {
-                    return Err(usage_failure(format!("{flag} {value}: expected A,B=L")));
+                    return Err(usage_failure(format!(
+                        "{flag} {value}: expected two names and a tolerance, A,B=L"
+                    )));
                 }
                 None => (&value[..], None),
             };

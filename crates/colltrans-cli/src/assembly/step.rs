@@ -34,7 +34,7 @@ pub(super) fn convert_to_glb(path: &Path, chord: f64) -> Result<Vec<u8>, Failure
     let failed = |text: String| Failure::new(Code::Input, format!("{}: {text}", path.display()));
     let unreadable = |e: io::Error| failed(format!("cannot be read: {e}"));
     if !path.metadata().map_err(unreadable)?.is_file() {
-        return Err(failed("is not a file".into()));
+        return Err(failed("is not a regular file; give a STEP file".into()));
     }
     let (mut command, name) = converter();
     command.arg(path).args(["-o", "-", "--chord", &chord.to_string()]);
@@ -43,8 +43,8 @@ pub(super) fn convert_to_glb(path: &Path, chord: f64) -> Result<Vec<u8>, Failure
         ErrorKind::NotFound => failed(INSTALL_HINT.into()),
         _ => failed(format!("{name} cannot be run: {e}")),
     })?;
-    let (glb, messages, status) =
-        run_converter(child).map_err(|e| failed(format!("{name}: {e}")))?;
+    let (glb, messages, status) = run_converter(child)
+        .map_err(|e| failed(format!("the output of {name} cannot be read: {e}")))?;
     if status.success() {
         return Ok(glb);
     }

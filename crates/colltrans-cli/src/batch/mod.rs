@@ -107,12 +107,21 @@ fn open_queries(path: &Path) -> Result<(Queries, Option<u64>, PathBuf), Failure>
     };
     // Pipes are read like standard input. A device may have no end.
     if is_device(&path.metadata().map_err(unreadable)?) && path != Path::new("/dev/stdin") {
-        return Err(Failure::new(Code::Input, format!("{}: is a device", path.display())));
+        return Err(Failure::new(
+            Code::Input,
+            format!(
+                "{}: is a device; give a file of queries, or - for standard input",
+                path.display()
+            ),
+        ));
     }
     let file = File::open(path).map_err(unreadable)?;
     let metadata = file.metadata().map_err(unreadable)?;
     if metadata.is_dir() {
-        return Err(Failure::new(Code::Input, format!("{}: is a folder", path.display())));
+        return Err(Failure::new(
+            Code::Input,
+            format!("{}: is a folder; give a file of queries", path.display()),
+        ));
     }
     let size = metadata.is_file().then_some(metadata.len());
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();

@@ -56,7 +56,9 @@ impl Batch {
     ) -> bool {
         let (id, answer) = match line {
             Line::Text(text) => self.answer_line(number, text, recent),
-            Line::TooLong => (None, Err(format!("line {number}: longer than 64 MiB"))),
+            Line::TooLong => {
+                (None, Err(format!("line {number}: is longer than the accepted 64 MiB")))
+            }
         };
         let line = answer.unwrap_or_else(AnswerLine::from_error);
         line.write_with_id(id, results);

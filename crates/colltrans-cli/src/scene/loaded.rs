@@ -209,7 +209,7 @@ impl ReadOptions {
             found.push((loaded.clone(), place, name));
         }
         if found.is_empty() {
-            return Err(input("contains no obstacles".into()));
+            return Err(input("contains no obstacles; expected one JSON object per line".into()));
         }
         Ok(found)
     }

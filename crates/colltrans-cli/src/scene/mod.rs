@@ -69,7 +69,10 @@ pub(crate) fn answer_placed(
         return write_answer(targets, &line, |record| text::within_text(record, length), prove);
     }
     // The scene has a file, and each file at least one obstacle.
-    let found = query.nearest()?.ok_or(Failure::new(Code::Input, "the scene has no obstacles"))?;
+    let found = query.nearest()?.ok_or(Failure::new(
+        Code::Input,
+        "the scene has no obstacles; give at least one mesh with --scene",
+    ))?;
     let accuracy = scene.accuracy(request.pose, found.obstacle);
     let mut record = NearestRecord::from_nearest(&found, &query);
     record.fixed = scene.name(found.obstacle);

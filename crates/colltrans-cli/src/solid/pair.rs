@@ -4,6 +4,7 @@ use colltrans::record::{Ending, PairQuestion, Record};
 use colltrans::{Pair, Pose, ProofFile, ProofFileError, QueryError, Solid};
 
 use super::{Body, PartsQuery, extent, renumber_features};
+use crate::distance::Accuracy;
 use crate::failure::{Code, Failure};
 
 /// The proof, `None` if the answer has none, or the failure of computing it.

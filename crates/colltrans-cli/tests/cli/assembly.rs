@@ -607,8 +607,11 @@ fn roles_of_pairs_and_suggestions_free_a_press_fit() {
     let glued = ask(&["said.toml", "--glued", "o-ring,floor"]);
     assert!(glued["plan"].as_array().unwrap().iter().any(|s| names(&s["parts"]).len() == 2));
     let wrong: [(&[&str], &[&str]); 4] = [
-        (&["--pair", "block,o-ring"], &["--pair block,o-ring: expected A,B=L"]),
-        (&["--snap", "block,o-ring=x"], &["expected A,B=L"]),
+        (
+            &["--pair", "block,o-ring"],
+            &["--pair block,o-ring: expected two names and a tolerance, A,B=L"],
+        ),
+        (&["--snap", "block,o-ring=x"], &["and a tolerance, A,B=L"]),
         (&["--press", "block"], &["expected two names"]),
         (&["--press", "block,o-ring=-1"], &["-1"]),
     ];

@@ -160,7 +160,7 @@ fn repeated_columns_and_joints_are_rejected() {
     assert!(said.contains("twice.csv: names of columns: duplicate name `elbow`"), "{said}");
     let joints = ["path", &arm, &rows, "--joint", "reach=0.1", "--joint", "reach=0.2"];
     let said = stderr(&run(folder.path(), &joints));
-    assert!(said.contains("--joint reach=0.2: this joint has two values"), "{said}");
+    assert!(said.contains("--joint reach=0.2: this joint already has a value"), "{said}");
     let said = stderr(&run(folder.path(), &["path", &arm, &rows, "--joint", "reach=nan"]));
     assert!(said.contains("--joint reach=nan: expected NAME=VALUE"), "{said}");
 }

@@ -294,7 +294,7 @@ fn each_clearance_outcome_is_printed() {
     let text = clearance("-3,0.5,0", &[]);
     assert!(text.starts_with("blocked\n  distance "), "{text}");
     let ahead = after(&text, "distance");
-    assert!(ahead <= 1.0 && ahead > 1.0 - 1e-12, "{text}");
+    assert!(ahead <= 1.0 && ahead > 1.0 - 1e-8, "{text}");
     let text = clearance("0.5,0.5,0", &[]);
     let ways = ["free after", "or after"].map(|name| after(&text, name));
     assert!(ways[0] >= 0.75 && ways[1] >= 0.25, "{text}");
@@ -382,8 +382,9 @@ fn clearances_along_many_directions_are_rounded_down() {
     {
         assert_eq!(line[1], "blocked");
         let [distance, far] = [line[2], line[3]].map(|word| word.parse::<f64>().unwrap());
-        assert_eq!(record["distance"], distance);
-        assert!(far <= distance * length && far > distance * length * (1.0 - 1e-14), "{line:?}");
+        let safe = record["distance"].as_f64().unwrap();
+        assert!(distance <= safe && distance > safe * (1.0 - 1e-8), "{line:?}: {record}");
+        assert!(far <= safe * length && far > safe * length * (1.0 - 1e-8), "{line:?}: {record}");
     }
     assert!(lines[1][2].parse::<f64>().unwrap() <= 2.1, "the cubes are 2.1 apart");
     assert_eq!(lines[3][1..4], ["behind", "-", "-"]);

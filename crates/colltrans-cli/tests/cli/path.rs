@@ -16,7 +16,7 @@ fn arm_touches_a_wire_on_its_path() {
     let (folder, [arm, rows, wire]) = (folder(), files());
     let text = answered(folder.path(), &["path", &arm, &rows, &wire]);
     assert!(
-        text.starts_with("contact\n  bodies       tool, wire\n  time         0.60356030803"),
+        text.starts_with("contact\n  bodies       tool, wire\n  time         0.603560308\n"),
         "{text}"
     );
     let told = read(&answered(folder.path(), &["path", &arm, &rows, &wire, "--json"]));

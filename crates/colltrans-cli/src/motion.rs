@@ -106,6 +106,7 @@ fn answer_parts(
 }
 
 /// The moving and the fixed body of an answer.
+#[derive(Clone, Copy)]
 struct Placed<'a> {
     motions: &'a [Motion; 2],
     /// Extent of the smaller body.

@@ -76,9 +76,9 @@ fn middle_and_half_width([lower, upper]: [f64; 2]) -> Option<(f64, f64)> {
         let needed = (upper - shown).max(shown - lower) * (1.0 + 4.0 * f64::EPSILON) + spacing;
         (shown, round_up(needed, HALF_WIDTH_DIGITS))
     };
-    let all = (1..=MAX_DIGITS).map(rounded).filter(|(a, b)| a.is_finite() && b.is_finite());
+    let mut all = (1..=MAX_DIGITS).map(rounded).filter(|(a, b)| a.is_finite() && b.is_finite());
     let is_tight = |(_, shown): &(f64, f64)| *shown <= WIDENING * half_width;
-    all.clone().find(is_tight).or_else(|| all.last())
+    all.clone().find(is_tight).or_else(|| all.next_back())
 }
 
 /// Returns an interval that a unit follows, in parentheses if it has two numbers.

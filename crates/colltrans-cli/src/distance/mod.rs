@@ -47,8 +47,7 @@ fn answer_convex(
     let answer = question.answer(&pair)?;
     let line = Line::from_record(answer.record(&pair)).with_parts(bodies);
     let surface = |k: usize, origin| placed_surface(&bodies[k].body, &poses[k], origin);
-    let accuracy =
-        || Accuracy { error: 0.0, extent: smaller_extent(bodies.map(|part| part.bounds())) };
+    let accuracy = || Accuracy { error: 0.0, extent: smaller_extent(bodies.map(Part::bounds)) };
     targets.write_answer(AnswerOutputs {
         record: &line,
         text: || text::answer_text(question, &line, accuracy()),

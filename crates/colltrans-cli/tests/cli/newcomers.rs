@@ -299,7 +299,10 @@ fn each_clearance_outcome_is_printed() {
     let ways = ["free after", "or after"].map(|name| after(&text, name));
     assert!(ways[0] >= 0.75 && ways[1] >= 0.25, "{text}");
     let record = json(&clearance("0.5,0.5,0", &["--json"]));
-    assert_eq!([&record["back"], &record["on"]].map(|v| v.as_f64().unwrap()), ways[..], "{record}");
+    for (shown, exact) in ways.into_iter().zip(["back", "on"]) {
+        let exact = record[exact].as_f64().unwrap();
+        assert!(shown >= exact && shown < exact * (1.0 + 1e-8), "{text}: {record}");
+    }
     let record = json(&clearance("-3,0.5,0", &["--json"]));
     let (distance, lower) = (&record["distance"], &record["translation_bounds"][0]);
     assert!(distance.as_f64() <= lower.as_f64() && lower.as_f64().is_some(), "{record}");

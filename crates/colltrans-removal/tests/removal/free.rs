@@ -183,7 +183,11 @@ fn overlap_open_shell_and_negative_tolerance_are_rejected() {
     let place = |options| {
         FreeDirections::compute(&cube.at(Pose::IDENTITY), &other.at(Pose::IDENTITY), options)
     };
-    assert!(matches!(place(EXACT), Err(FreeError::Overlapping { .. })));
+    let Err(overlap @ FreeError::Overlapping { .. }) = place(EXACT) else { panic!("they overlap") };
+    let message = overlap.to_string();
+    let start = "the bodies overlap at the start (triangle ";
+    let end = " of the fixed body), so no direction is free; increase the tolerance or ignore the start overlap";
+    assert!(message.starts_with(start) && message.ends_with(end), "{message}");
     assert!(place(EXACT.with_start_overlap(StartOverlap::Ignore)).is_ok());
     assert!(matches!(place(EXACT.with_tolerance(-1.0)), Err(FreeError::Query(_))));
     let sheet = Solid::from_open_mesh(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]]).unwrap();

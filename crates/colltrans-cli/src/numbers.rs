@@ -32,7 +32,7 @@ const HALF_WIDTH_DIGITS: usize = 2;
 /// Returns an interval, with at most [`MAX_DIGITS`] digits in each number. The printed interval contains the given one.
 ///
 /// - `7 ± 7.3e-13`: the middle with the fewest digits that widen the interval by no more than a quarter, and the half
-///   width. If more than [`MAX_DIGITS`] digits were necessary, the half width includes the rounding error of the middle.
+///   width. If that needs more than [`MAX_DIGITS`] digits, the half width grows by the rounding error of the middle.
 /// - `0.2 to 0.95`: the ends, if the half width is more than a hundredth of the middle.
 /// - `0.25`: a number, if the width is zero and the number has at most [`MAX_DIGITS`] digits.
 /// - `at least 3`, `at most 3`: one end, if the other one is infinite.
@@ -56,8 +56,8 @@ pub(crate) fn interval([lower, upper]: [f64; 2]) -> String {
     ends.map(number).join(" to ")
 }
 
-/// Returns the rounded middle and half width of a narrow interval, or of one that is nearly symmetric to zero; `None` for
-/// other intervals, and if a number is not finite.
+/// Returns the rounded middle and half width of a narrow interval, or of one that is nearly symmetric to zero. Returns
+/// `None` for other intervals, and if a number is not finite.
 fn middle_and_half_width([lower, upper]: [f64; 2]) -> Option<(f64, f64)> {
     let half_width = 0.5 * upper - 0.5 * lower;
     if lower <= 0.0 && 0.0 <= upper {
@@ -104,8 +104,8 @@ pub(crate) fn length_up(length: f64) -> String {
     number(if is_short(length) { length } else { round_up(length, LENGTH_DIGITS) })
 }
 
-/// Returns a length that is safe if it is too short, for example a minimum gap, rounded down to [`LENGTH_DIGITS`] digits. A
-/// number of at most [`MAX_DIGITS`] digits is unchanged.
+/// Returns a length that is safe if it is too short, for example a minimum gap, rounded down to [`LENGTH_DIGITS`] digits.
+/// A number of at most [`MAX_DIGITS`] digits is unchanged.
 pub(crate) fn length_down(length: f64) -> String {
     number(if is_short(length) { length } else { round_down(length, LENGTH_DIGITS) })
 }

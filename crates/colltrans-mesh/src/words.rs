@@ -57,8 +57,8 @@ pub fn round_up(value: f64, digits: usize) -> f64 {
     if value < 0.0 { -round_down(-value, digits) } else { decimals_around(value, digits)[1] }
 }
 
-/// Returns the largest number of at most this many significant decimal digits that does not exceed the value. Infinities
-/// and NaN are returned unchanged.
+/// Returns the largest number of at most this many significant decimal digits that does not exceed the value.
+/// Infinities and NaN are returned unchanged.
 pub fn round_down(value: f64, digits: usize) -> f64 {
     if value < 0.0 { -round_up(-value, digits) } else { decimals_around(value, digits)[0] }
 }

@@ -148,8 +148,8 @@ fn region_text(region: &FreeRegionRecord) -> String {
     text
 }
 
-/// Describes the files of a blocking pair, and the share of the blocked cells that are attributed to it. The pair may block
-/// more or, if boxes inside the bodies block cells, less.
+/// Describes the files of a blocking pair, and the share of the blocked cells that are attributed to it. The pair may
+/// block more or, if boxes inside the bodies block cells, less.
 fn blocker_text(by: &BlockedByRecord) -> String {
     let name = |name: &Option<String>| name.as_ref().map(escape_line);
     let who = match (name(&by.moving), name(&by.fixed)) {

@@ -52,8 +52,8 @@ pub(super) fn within_text(record: &SceneWithinRecord, length: f64) -> String {
     text
 }
 
-/// Returns the answer of `clearance`. `accuracy` is that of a blocking obstacle. `is_default` states that no tolerance was
-/// given.
+/// Returns the answer of `clearance`. `accuracy` is that of a blocking obstacle. `is_default` states that no tolerance
+/// was given.
 pub(super) fn clearance_text(
     record: &SceneClearanceRecord,
     direction: DVec3,

@@ -23,8 +23,8 @@ pub enum FreeError {
     /// The bodies, each offset inwards by half the tolerance, overlap at the start, and the overlap is not
     /// ignored.
     #[error(
-        "the bodies overlap at the start ({place}), so no direction is free; increase the tolerance or ignore the start \
-         overlap"
+        "the bodies overlap at the start ({place}), so no direction is free; increase the tolerance or ignore the \
+         start overlap"
     )]
     Overlapping {
         /// A common point.

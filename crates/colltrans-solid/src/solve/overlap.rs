@@ -70,7 +70,8 @@ impl fmt::Display for Overlap {
     }
 }
 
-/// Finds a place where the interiors intersect or an open shell passes through the other body; `None` if there is no
+/// Finds a place where the interiors intersect or an open shell passes through the other body. With a minimum gap,
+/// finds two facets that are certainly nearer than the gap, or a shell inside the other body. `None` if there is no
 /// such place.
 #[inline]
 pub fn find_overlap(scene: &PairFrame, steps: &mut SolidSteps) -> Option<Overlap> {

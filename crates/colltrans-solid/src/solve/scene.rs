@@ -96,7 +96,7 @@ impl<'a> PairFrame<'a> {
     /// and the minimum gap `min_gap`.
     fn set_noise_and_gap(&mut self, min_gap: f64) {
         let Self { setting, moving, fixed, .. } = self;
-        let size = moving.max_radius() + fixed.max_radius() + setting.offset.length();
+        let size = configuration_size(setting, moving, fixed);
         let (noise, min_gap) = noise_and_gap(size, min_gap);
         // A pose may stretch axes by its defect. The last term covers rounding.
         let stretch = 1.0 + 2.0 * moving.defect.max(fixed.defect) + 16.0 * f64::EPSILON;
@@ -118,8 +118,9 @@ impl<'a> PairFrame<'a> {
         side.matrix * corner.local + side.offset[0]
     }
 
-    /// Returns this scene with the bodies offset by other amounts. The noise and the minimum gap remain those of this
-    /// scene.
+    /// Returns this scene with the bodies offset by other amounts. The minimum gap remains that of this scene, unless it
+    /// is too small to be distinguished from the rounding errors of the offset bodies. The noise is that of the offset
+    /// bodies, or that of this scene if the latter is larger.
     pub(crate) fn with_offsets(&self, moving: f64, fixed: f64) -> Self {
         let resized = |side: &PlacedBody<'a>, amount| {
             let amount = if side.solid.has_offset() { amount } else { 0.0 };
@@ -127,7 +128,10 @@ impl<'a> PairFrame<'a> {
             let inward = inward_side(side.along, side.aligned, side.moving, amount);
             PlacedBody { amount, shrinking, inward, ..*side }
         };
-        Self { moving: resized(&self.moving, moving), fixed: resized(&self.fixed, fixed), ..*self }
+        let (moving, fixed) = (resized(&self.moving, moving), resized(&self.fixed, fixed));
+        let size = configuration_size(&self.setting, &moving, &fixed);
+        let (noise, min_gap) = noise_and_gap(size, self.min_gap);
+        Self { moving, fixed, noise: noise.max(self.noise), min_gap, ..*self }
     }
 
     /// Checks whether both bodies have the axes of the query frame.
@@ -338,6 +342,15 @@ pub(crate) fn place_exactly<const N: usize>(
     })
 }
 
+/// Returns the size `S` of two offset bodies, without the minimum gap.
+fn configuration_size(
+    setting: &Setting<Solid>,
+    moving: &PlacedBody<'_>,
+    fixed: &PlacedBody<'_>,
+) -> f64 {
+    moving.max_radius() + fixed.max_radius() + setting.offset.length()
+}
+
 /// Returns the noise of a configuration of this size, and its minimum gap: 0 if `min_gap` is too small to be
 /// distinguished from rounding errors.
 pub(crate) fn noise_and_gap(size: f64, min_gap: f64) -> (f64, f64) {
@@ -387,4 +400,41 @@ fn defect_beyond_rounding(m: DMat3) -> f64 {
 /// Checks whether a pose's matrix, a rotation up to small errors, permutes axes and changes signs.
 pub(crate) fn permutes_axes(m: DMat3) -> bool {
     m.to_cols_array().iter().all(|&entry| entry == 0.0 || entry.abs() == 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use colltrans_convex::body::{ConvexPolyhedron, Pose};
+    use colltrans_convex::cast::Cast;
+
+    use super::*;
+
+    /// Offsets increase the size of a configuration. With the noise of the nominal bodies, rounding errors of displaced
+    /// vertices would exceed the noise.
+    #[test]
+    fn noise_of_offset_scene_covers_displacements() {
+        // A thin tip on a block: its vertex is displaced by a large multiple of the offset.
+        let tip =
+            [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.5, 0.5, 20.0]];
+        let tip = ConvexPolyhedron::from_points(&tip.map(DVec3::from_array)).expect("a body");
+        let tip = Solid::from_convex(&tip).expect("a solid");
+        let turn = glam::DQuat::from_euler(glam::EulerRot::ZYX, 0.3, 0.5, 0.7);
+        let pose = Pose::new(turn, DVec3::new(0.1, 0.2, 0.3)).expect("a pose");
+        for min_gap in [0.0, 0.25] {
+            let cast = Cast::new(tip.at(pose), tip.at(Pose::IDENTITY), DVec3::X).expect("a cast");
+            let nominal = PairFrame::new(&cast.setting, [0.0; 2], min_gap);
+            for amount in [0.0, 1e-3, 0.1, 0.4, 10.0] {
+                let direct = PairFrame::new(&cast.setting, [amount; 2], min_gap);
+                let offset = nominal.with_offsets(amount, amount);
+                assert!(
+                    offset.noise >= direct.noise,
+                    "{amount}: {} {}",
+                    offset.noise,
+                    direct.noise
+                );
+                assert_eq!(offset.with_offsets(0.0, 0.0).noise, offset.noise);
+            }
+            assert_eq!(nominal.with_offsets(0.0, 0.0).noise, nominal.noise);
+        }
+    }
 }

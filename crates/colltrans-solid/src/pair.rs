@@ -205,20 +205,7 @@ impl<'a> SolidPair<'a> for Pair<'a, Solid> {
         length: f64,
     ) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError> {
         let ((answer, _), found) = self.within_with_proof_input(length, true)?;
-        if found.cover.is_none() {
-            return Ok((answer, None));
-        }
-        let proof = self.prove_lower_bound(found)?;
-        let gap = proof.lower;
-        let answer = match answer {
-            Within::Closer(near) => Within::Closer(near),
-            Within::Undecided(distance) if gap <= length => {
-                let (lower, gap) = (gap, distance.gap.map(|_| SolidGap { gap }));
-                Within::Undecided(Distance { lower, gap, ..distance })
-            }
-            Within::Farther(_) | Within::Undecided(_) => Within::Farther(SolidGap { gap }),
-        };
-        Ok((answer, Some(proof)))
+        prove_within(self, length, answer, found)
     }
 
     fn overlap_depth(&self) -> Result<OverlapDepth, QueryError> {
@@ -348,6 +335,40 @@ impl PairBody for Solid {
     }
 }
 
+/// Proves the answer of a search, and restricts it to what the proof shows. The cover may prove less than the search.
+fn prove_within(
+    pair: &Pair<'_, Solid>,
+    length: f64,
+    answer: Within<Solid>,
+    found: ProofInput,
+) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError> {
+    if found.cover.is_none() {
+        return Ok((answer, None));
+    }
+    let mut proof = pair.prove_lower_bound(found)?;
+    let distance = match answer {
+        Within::Closer(_) => return Ok((answer, Some(proof))),
+        Within::Undecided(distance) => distance,
+        Within::Farther(_) if proof.lower > length => {
+            return Ok((Within::Farther(SolidGap { gap: proof.lower }), Some(proof)));
+        }
+        Within::Farther(_) => {
+            // The search for the distance has a cover of its own.
+            let (distance, found) = pair.distance_with_proof_input(true)?;
+            proof = pair.prove_lower_bound(found)?;
+            distance
+        }
+    };
+    let lower = proof.lower;
+    let answer = if lower > length {
+        Within::Farther(SolidGap { gap: lower })
+    } else {
+        let gap = (lower > 0.0).then_some(SolidGap { gap: lower });
+        Within::Undecided(Distance { lower, gap, ..distance })
+    };
+    Ok((answer, Some(proof)))
+}
+
 /// Returns the nominal bodies in a common frame; its direction `z` has no meaning.
 fn pair_scene<'a>(pair: &Pair<'a, Solid>) -> Result<PairFrame<'a>, QueryError> {
     let setting = Setting::from_bodies(pair.bodies, DVec3::Z)?;
@@ -463,4 +484,40 @@ fn verify_cover(
         return Err(CertificateError::StartClaim);
     }
     Ok(proven)
+}
+
+#[cfg(test)]
+mod tests {
+    use colltrans_convex::body::{ConvexPolyhedron, Pose};
+
+    use super::*;
+
+    /// With a cover that proves nothing, neither a search that found a larger distance nor an undecided one may be
+    /// answered by more than the proof shows.
+    #[test]
+    fn answer_with_weak_cover_claims_only_proven_distance() {
+        let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
+        let cube = Solid::from_convex(&cube).expect("a solid");
+        let there = Pose::from_translation(DVec3::X * 3.0).expect("a pose");
+        let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(there)).expect("a pair");
+        for (length, is_farther) in [(1.0, true), (2.0, false)] {
+            let ((answer, _), mut found) =
+                pair.within_with_proof_input(length, true).expect("an answer");
+            assert_eq!(matches!(answer, Within::Farther(_)), is_farther);
+            found.cover = Some(Cover::new([&cube, &cube], &HashMap::new()));
+            let (answer, proof) = prove_within(&pair, length, answer, found).expect("an answer");
+            let proof = proof.expect("a proof");
+            pair.verify(&proof).expect("it holds");
+            match answer {
+                Within::Farther(gap) => {
+                    assert!(gap.gap > length && gap.gap == proof.lower, "{gap:?}")
+                }
+                Within::Undecided(of) => {
+                    assert!(of.lower <= length && of.lower == proof.lower, "{of:?}");
+                    assert_eq!(of.gap.map(|of| of.gap), (of.lower > 0.0).then_some(of.lower));
+                }
+                Within::Closer(_) => panic!("{answer:?}"),
+            }
+        }
+    }
 }

@@ -223,3 +223,41 @@ fn poses_that_stretch_are_where_their_entries_say() {
     }
     assert!(apart > cases(30), "{apart}");
 }
+
+/// A proven answer `Farther` states a distance above the length, however near the length is to the distance.
+#[test]
+fn farther_with_proof_exceeds_the_length() {
+    let mut random = Random::new(71);
+    let [a, b] = [cuboid([0.0; 3], [1.0, 0.7, 0.4]), cuboid([0.0; 3], [0.3, 0.9, 1.2])];
+    let ball = solid(&bumpy_ball(300));
+    for _ in 0..cases(400) {
+        let (p, q) = [(&a, &b), (&a, &ball), (&ball, &b)][random.int(0, 2) as usize];
+        let turn = DQuat::from_euler(
+            glam::EulerRot::ZYX,
+            random.range(-3.0, 3.0),
+            random.range(-1.5, 1.5),
+            random.range(-3.0, 3.0),
+        );
+        let far = DVec3::new(random.range(-4.0, 4.0), random.range(-4.0, 4.0), 3.5);
+        let pair = Pair::new(p.at(Pose::new(turn, far).expect("a pose")), q.at(Pose::IDENTITY))
+            .expect("a pair");
+        let found = pair.distance().expect("a distance");
+        let noise = 32.0 * f64::EPSILON * 6.0;
+        let proven = pair.certified_distance().expect("an answer").1.lower;
+        let lengths = [found.lower.next_down(), proven, proven.next_up()];
+        let spread = (-32..=32).map(|k| found.lower + f64::from(k) * noise / 32.0);
+        for length in lengths.into_iter().chain(spread) {
+            let (answer, proof) = pair.certified_within(length).expect("an answer");
+            match answer {
+                Within::Farther(gap) => {
+                    assert!(gap.gap > length, "{gap:?} {length:e} {found:?}");
+                    assert_eq!(proof.expect("a proof").lower, gap.gap);
+                }
+                Within::Undecided(of) => {
+                    assert!(of.lower <= length && length <= of.upper, "{of:?} {length:e}")
+                }
+                Within::Closer(near) => assert!(near.distance() <= length),
+            }
+        }
+    }
+}

@@ -102,8 +102,9 @@ fn facets_separate_bodies(scene: &PairFrame, place: Overlap) -> bool {
 }
 
 /// Computes an upper bound of the tolerance from which on a place shows no overlap. At the tolerance `overlapping`
-/// the bodies are known to overlap. `None` if the result is beyond `max_offset_tolerance`. Adds the number of tests
-/// of the place to `tests`.
+/// the bodies are known to overlap. `None` if the estimate is beyond `max_offset_tolerance`, or if the place shows an
+/// overlap at all tested tolerances. The result may lie slightly beyond `max_offset_tolerance`. Therefore the caller
+/// tests the bodies at this result. Adds the number of tests of the place to `tests`.
 fn place_tolerance(
     nominal: &PairFrame,
     place: Overlap,
@@ -153,7 +154,8 @@ fn tolerance_accuracy(tolerance: f64, noise: f64) -> f64 {
 
 /// Brackets the tolerance at which a condition begins to hold, near a guess. The distance from the guess grows by a
 /// factor of 4 in each step. The condition must not hold at the lower end of the range. Returns a tolerance at which it
-/// does not hold, possibly that end, and one at which it does. `None` if it does not hold up to the upper end.
+/// does not hold, possibly that end, and one at which it does. The latter may be beyond the upper end by less than the last
+/// step. `None` if the condition does not hold up to the upper end.
 fn bracket_around(
     guess: f64,
     [mut low, last]: [f64; 2],
@@ -183,8 +185,8 @@ fn bracket_around(
     None
 }
 
-/// Brackets the tolerance at which a condition begins to hold, by doubling the lower end of the range or the noise.
-/// `None` if it does not hold up to the upper end.
+/// Brackets the tolerance at which a condition begins to hold, by doubling the lower end of the range or the noise. The
+/// first step is tested even if it is beyond the upper end. `None` if the condition does not hold up to the upper end.
 fn bracket_by_doubling(
     [mut low, last]: [f64; 2],
     noise: f64,

@@ -78,6 +78,14 @@ pub enum MotionError {
         /// The time as given.
         time: f64,
     },
+    /// A piece of the motion does not start where the previous one ends.
+    #[error(
+        "the motion jumps at the time {time}; each piece must start at the pose at which the previous one ends"
+    )]
+    Jump {
+        /// Start time of the later piece.
+        time: f64,
+    },
     /// A pose of the motion was rejected.
     #[error("invalid pose of the motion: {0}")]
     Pose(#[from] PoseError),

@@ -8,9 +8,8 @@
 //! - The body frame has the rotation `E(t) R` and the translation `T + v (t - s) + (E(t) - 1) a`.
 //!
 //! The numbers `s, R, T, a, k, w, v` define a motion in exact arithmetic, as if the length of `k` were 1.
-//! `Piece::error_bound` bounds the rounding error of computed points. In a motion of [`Motion::through_poses`], a
-//! piece starts where the previous one ends, up to rounding and the defects of the matrices. Deserialising does not
-//! check this.
+//! `Piece::error_bound` bounds the rounding error of computed points. A piece starts where the previous one ends, up to
+//! rounding and the defects of the matrices. Deserialising checks this, because a search of solids relies on it.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -19,10 +18,21 @@ use crate::error::MotionError;
 use crate::error_free::{difference_error, product_error};
 use crate::noise;
 use crate::pose::Pose;
+#[cfg(feature = "serde")]
+use crate::pose::rotation_defect;
 use crate::range::{MIN_MAGNITUDE, is_in_exact_range};
 
 /// Maximum sine of half the angle of a rotation between two poses that counts as rounding error of 0.
 const NO_ROTATION: f64 = 1e-15;
+
+/// Maximum difference of the end of a piece and the start of the next one that counts as rounding. It applies to the
+/// entries of the rotation, and to the translation as a share of the lengths that it is computed from.
+#[cfg(feature = "serde")]
+const MAX_JUMP: f64 = 1e-12;
+
+/// Factor from the defects of two matrices to the difference of rotations that they may cause.
+#[cfg(feature = "serde")]
+const MAX_DEFECT_FACTOR: f64 = 4.0;
 
 /// The pose of a body at every time from 0 to 1.
 ///
@@ -273,6 +283,23 @@ impl Piece {
         Ok(self)
     }
 
+    /// Checks whether this piece ends where the next one starts, up to rounding and the defects of the matrices.
+    #[cfg(feature = "serde")]
+    fn ends_at_start_of(&self, next: &Self) -> bool {
+        let span = next.start_time - self.start_time;
+        let PiecePlacement { rotation, displacement, .. } = self.placement_at(next.start_time);
+        let [from, to] = [self, next].map(|piece| piece.start_pose);
+        let defects = rotation_defect(from.matrix()) + rotation_defect(to.matrix());
+        let turned = (rotation - to.matrix()).to_cols_array();
+        let turned = turned.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let lengths =
+            [from.translation(), to.translation(), self.velocity * span].map(DVec3::length);
+        let turning_length = self.arm.length() * (self.rate * span).abs().min(2.0);
+        let off = (from.translation() + displacement).distance(to.translation());
+        turned <= MAX_JUMP + MAX_DEFECT_FACTOR * defects
+            && off <= MAX_JUMP * (lengths.into_iter().sum::<f64>() + turning_length)
+    }
+
     /// Computes the placement at a time that is not before the start of the piece.
     #[inline]
     #[doc(hidden)]
@@ -451,7 +478,11 @@ impl TryFrom<Vec<PieceRecord>> for Motion {
                 rate: record.rate,
                 velocity: DVec3::from_array(record.velocity),
             };
-            pieces.push(piece.validated()?);
+            let piece = piece.validated()?;
+            if pieces.last().is_some_and(|last| !last.ends_at_start_of(&piece)) {
+                return Err(MotionError::Jump { time: record.since });
+            }
+            pieces.push(piece);
         }
         if pieces.is_empty() { Err(MotionError::NoPoses) } else { Ok(Self { pieces }) }
     }

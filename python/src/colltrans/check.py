@@ -2040,6 +2040,10 @@ class Spin:
 
 #: Maximum angle of a motion, in radians.
 _MOST_TURN = 10**5
+#: Maximum difference of the end of a piece of a motion and the start of the next one. It applies to
+#: the entries of the rotation, and to the translation as a share of the lengths that it is computed
+#: from.
+_JUMP = Fraction(1, 10**12)
 
 
 @dataclass(frozen=True)
@@ -2299,6 +2303,33 @@ def stays(a: Fraction, b: Fraction, c: Fraction) -> bool:
     return min(a, b) > 0 and (over < 0 or over * over < 4 * a * b)
 
 
+def follows(last: Spin, later: Spin) -> bool:
+    """Checks whether a piece of a motion starts where the previous one ends, up to rounding."""
+
+    def column(spin: Spin, k: int) -> Vector:
+        x, y, z = (row[k] for row in spin.body.rows)
+        return x, y, z
+
+    def length(v: Vector) -> Fraction:
+        return root_above(dot(v, v))
+
+    def defect(spin: Spin) -> Fraction:
+        columns = [column(spin, k) for k in range(3)]
+        off = (dot(columns[i], columns[j]) - (i == j) for i, j in product(range(3), repeat=2))
+        return root_above(sum((x * x for x in off), Fraction()))
+
+    span, way = later.since - last.since, scaled(last.way, later.since - last.since)
+    turned = (minus(last.turned(column(last, k), later.since), column(later, k)) for k in range(3))
+    start, end = last.body.offset, later.body.offset
+    reached = plus(plus(minus(start, last.arm), way), last.turned(last.arm, later.since))
+    sizes = length(start) + length(end) + length(way)
+    sizes += length(last.arm) * min(abs(last.rate * span), Fraction(2))
+    return (
+        max(abs(x) for v in turned for x in v) <= _JUMP + 4 * (defect(last) + defect(later))
+        and length(minus(reached, end)) <= _JUMP * sizes
+    )
+
+
 def spans(movers: list[Any], points: Sequence[list[Vector]], min_gap: Fraction) -> list[Span]:
     """Returns the periods in which both bodies spin evenly, in order."""
     sides = []
@@ -2307,6 +2338,8 @@ def spans(movers: list[Any], points: Sequence[list[Vector]], min_gap: Fraction) 
         times = [spin.since for spin in spins]
         if not times or times[0] != 0 or times[-1] >= 1 or sorted(set(times)) != times:
             raise NoProofError("the pieces of a motion are not in order, or do not start at 0")
+        if not all(follows(last, later) for last, later in pairwise(spins)):
+            raise NoProofError("a piece of a motion does not start where the previous one ends")
         sides.append(spins)
     borders = [*sorted({spin.since for side in sides for spin in side}), Fraction(1)]
     found = []

@@ -6,6 +6,8 @@ use colltrans_motion::{Motion, MotionCast};
 use colltrans_proof::{ProofFile, ProofFileError};
 use colltrans_solid::{AsSolid, Solid};
 use colltrans_testkit::bodies::cube;
+use colltrans_testkit::cases;
+use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::Mesh;
 use colltrans_testkit::solids::turned;
 use glam::{DMat3, DQuat, DVec3};
@@ -81,6 +83,51 @@ fn motion_piece_starting_at_end_is_rejected() {
     last["start"]["translation"] = json!([3.0, 0.0, 0.0]);
     pieces.push(last);
     statement_text(&file).expect_err("a piece of no time");
+}
+
+/// A search of solids tests only at the start whether one contains the other. A body that jumps into a solid would
+/// therefore count as free.
+#[test]
+fn motion_that_jumps_is_rejected() {
+    let rest = Motion::through_poses(&[at(3.0); 3]).expect("a motion");
+    let value = serde_json::to_value(&rest).expect("JSON");
+    assert_eq!(serde_json::from_value::<Motion>(value.clone()).expect("a motion"), rest);
+    let jumps = |pointer: &str, new: Value| {
+        let read = serde_json::from_value::<Motion>(with_value(&value, pointer, new));
+        let message = read.expect_err("a jump").to_string();
+        assert!(message.contains("the motion jumps at the time 0.5"), "{message}");
+    };
+    jumps("/1/start/translation", json!([0.25, 0.25, 0.25]));
+    jumps("/1/start/translation", json!([3.0, 1e-9, 0.0]));
+    jumps("/1/start/matrix", json!([0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
+    jumps("/0/velocity", json!([1.0, 0.0, 0.0]));
+    jumps("/0/rate", json!(0.5));
+}
+
+#[test]
+fn continuous_motions_of_all_magnitudes_are_read() {
+    let mut random = Random::new(83);
+    for _ in 0..cases(4_000) {
+        let length = 10.0_f64.powi(random.int(-30, 30) as i32);
+        let small = 10.0_f64.powi(random.int(-17, 0) as i32);
+        let (first, start) = (random.rotation(), random.vector() * length);
+        // The matrices deviate from rotations by up to 1e-7.
+        let stretch = random.pick(&[0.0, 1e-9, 1e-7]);
+        let poses: Vec<Pose> = (0..random.int(2, 5))
+            .map(|k| {
+                let turn =
+                    DQuat::from_axis_angle(random.direction(), 3.0 * small * k as f64) * first;
+                let stretched =
+                    DMat3::from_quat(turn) + DMat3::from_diagonal(random.vector() * stretch);
+                let near = start + random.vector() * (length * random.pick(&[1.0, 1e-6, small]));
+                Pose::from_matrix(stretched, near).expect("a pose")
+            })
+            .collect();
+        let Ok(motion) = Motion::through_poses(&poses) else { continue };
+        let value = serde_json::to_value(&motion).expect("JSON");
+        let read = serde_json::from_value::<Motion>(value.clone());
+        assert_eq!(read.unwrap_or_else(|e| panic!("{e}: {value}")), motion);
+    }
 }
 
 #[test]

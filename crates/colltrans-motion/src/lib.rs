@@ -203,10 +203,11 @@ impl MotionCast<'_> {
     /// of input points from the faces of the bodies.
     ///
     /// # Errors
-    /// Returns an error if the increased gap is negative because a depth is tolerated, or in the cases of
-    /// [`MotionCast::between_any`].
+    /// Returns [`QueryError::MinGap`] if a depth is tolerated, and the errors of [`MotionCast::between_any`].
     #[doc(hidden)]
     pub fn as_solid_cast(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
+        // Input points may increase the gap above 0, but a check rejects all such proofs with a tolerated depth.
+        check_min_gap(self.min_gap)?;
         let moving = Moving { body: self.moving.body, motion: Cow::Borrowed(&*self.moving.motion) };
         let fixed = Moving { body: self.fixed.body, motion: Cow::Borrowed(&*self.fixed.motion) };
         MotionCast::between_any(moving, fixed)?

@@ -97,7 +97,7 @@ fn reason_suffix(reason: Option<&CertificateError>) -> String {
 pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2], MotionProofError> {
     if let Some(solids) = &proof.solids {
         let plain = proof.spans.is_empty() && proof.meeting.is_none();
-        let solid_cast = cast.as_solid_cast().ok().filter(|_| plain && cast.min_gap >= 0.0);
+        let solid_cast = cast.as_solid_cast().ok().filter(|_| plain);
         let [reached, meeting] = solid_cast.ok_or(MotionProofError::Start)?.verify(solids)?;
         return Ok([reached, cast.upper_bound_from_solids(meeting)]);
     }

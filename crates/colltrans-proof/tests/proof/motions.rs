@@ -2,7 +2,7 @@
 //! hold.
 
 use colltrans_convex::{ConvexPolyhedron, Pose};
-use colltrans_motion::{Motion, MotionCast, MotionOutcome};
+use colltrans_motion::{Motion, MotionCast, MotionOutcome, MotionProof};
 use colltrans_proof::{MotionCase, ProofFile};
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use glam::DVec3;
@@ -123,4 +123,24 @@ fn solid_proof_does_not_cover_hull_error() {
         MotionCase::from_cast(&cast).to_json().replace("\"hull_error\":0.0", "\"hull_error\":1e-3");
     let case = MotionCase::from_json(&text).unwrap();
     assert!(case.cast().verify(&proof).is_err(), "{text}");
+}
+
+/// The search of solids does not answer queries with a tolerated depth, because [`MotionCast::verify`] rejects such
+/// proofs. A depth below the hull error of the bodies is no exception.
+#[test]
+fn tolerated_depth_below_hull_error_is_not_searched_as_solids() {
+    let block = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
+    let rest = Motion::at_rest(Pose::IDENTITY);
+    let away = Motion::at_rest(Pose::from_translation(DVec3::X * 3.0).unwrap());
+    let cast = MotionCast::new(block.with_motion(&away), block.with_motion(&rest)).unwrap();
+    let text =
+        MotionCase::from_cast(&cast).to_json().replace("\"hull_error\":0.0", "\"hull_error\":1e-3");
+    let case = MotionCase::from_json(&text).unwrap();
+    let solids = case.cast().as_solid_cast().unwrap().certified_first_contact().unwrap();
+    let proof =
+        MotionProof { solids: Some(Box::new(solids.proof().clone())), ..MotionProof::default() };
+    assert_eq!(case.cast().verify(&proof).unwrap(), [1.0, f64::INFINITY]);
+    let tolerant = case.cast().with_tolerance(1e-3).unwrap();
+    assert!(tolerant.verify(&proof).is_err());
+    assert!(tolerant.as_solid_cast().is_err());
 }

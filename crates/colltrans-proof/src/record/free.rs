@@ -85,9 +85,12 @@ impl FreeRecord {
         let undecided = free.cells().filter(|cell| cell.kind == CellKind::Undecided).count();
         let also_free = free.free_among_undecided();
         let lower_dimensional = free.arcs().len() + free.points().len() + also_free.len();
+        // Free directions without an area are not always reported, so their absence does not prove a block.
+        let is_found = !regions.is_empty() || lower_dimensional > 0;
         let outcome = match undecided {
-            _ if !regions.is_empty() || lower_dimensional > 0 => Ending::Free,
-            0 => Ending::Blocked,
+            _ if is_found => Ending::Free,
+            0 if free.is_blocked() => Ending::Blocked,
+            0 if free.has_free_direction() => Ending::Free,
             _ => Ending::Undecided,
         };
         let [low, high] = free.free_area();

@@ -3,7 +3,9 @@
 use colltrans_convex::{ConvexPolyhedron, Pose};
 use colltrans_motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
 use colltrans_motion::{Motion, MotionCast};
+use colltrans_proof::record::{Ending, FreeRecord};
 use colltrans_proof::{ProofFile, ProofFileError};
+use colltrans_removal::directions::{CellProof, FreeDirections, FreeOptions, FreeProof};
 use colltrans_solid::{AsSolid, Solid};
 use colltrans_testkit::bodies::cube;
 use colltrans_testkit::cases;
@@ -392,4 +394,83 @@ fn joined_pairs_with_tolerance_are_rejected() {
         let read = ProofFile::of_motions(vec![file.clone(), file]);
         assert_eq!(read.is_ok(), holds, "{tolerance}");
     }
+}
+
+/// Divides every open cell of a proof that a plane through the origin crosses, down to a depth.
+fn divided_along(cells: &[CellProof], normal: DVec3, depth: u32) -> Vec<CellProof> {
+    fn copy(
+        cells: &mut std::slice::Iter<CellProof>,
+        (axis, sign): (usize, f64),
+        ([u, v], size): ([f64; 2], f64),
+        (normal, depth): (DVec3, u32),
+        into: &mut Vec<CellProof>,
+    ) {
+        let quarter = |k: usize| {
+            let half = 0.5 * size;
+            ([u + half * (k & 1) as f64, v + half * (k >> 1) as f64], half)
+        };
+        let heights = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[a, b]| {
+            let mut d = DVec3::ZERO;
+            (d[axis], d[(axis + 1) % 3], d[(axis + 2) % 3]) = (sign, u + a * size, v + b * size);
+            normal.dot(d)
+        });
+        let is_crossed = heights.iter().any(|h| *h > 0.0) && heights.iter().any(|h| *h < 0.0);
+        let cell = cells.next().expect("a cell");
+        match cell {
+            CellProof::Cut => {
+                into.push(CellProof::Cut);
+                for k in 0..4 {
+                    copy(cells, (axis, sign), quarter(k), (normal, depth.saturating_sub(1)), into);
+                }
+            }
+            CellProof::Open(_) if is_crossed && depth > 0 => {
+                into.push(CellProof::Cut);
+                let four = [const { CellProof::Cut }; 4].map(|_| cell.clone());
+                for (k, one) in four.iter().enumerate() {
+                    let mut one = std::slice::from_ref(one).iter();
+                    copy(&mut one, (axis, sign), quarter(k), (normal, depth - 1), into);
+                }
+            }
+            _ => into.push(cell.clone()),
+        }
+    }
+    let (mut cells, mut into) = (cells.iter(), Vec::new());
+    for side in 0..6 {
+        let sign = if side % 2 == 0 { 1.0 } else { -1.0 };
+        copy(&mut cells, (side / 2, sign), ([-1.0; 2], 2.0), (normal, depth), &mut into);
+    }
+    into
+}
+
+/// A plate between two plates is free along a great circle whose directions are rarely representable. In a proof with
+/// many cells the arcs of this circle are too many to compare, and none is reported.
+#[test]
+fn record_without_reported_arcs_is_not_blocked() {
+    let normal = DVec3::new(1009.0, 1013.0, 1019.0);
+    let [u, v, w] = [DVec3::new(1013.0, -1009.0, 0.0), DVec3::new(1019.0, 0.0, -1009.0), DVec3::X];
+    let plate = |size: f64, from: f64| {
+        let corner = |k: u32| {
+            let sign = |bit: u32| if k >> bit & 1 == 0 { -size } else { size };
+            u * sign(0) + v * sign(1) + w * (from + f64::from(k >> 2 & 1))
+        };
+        let points: Vec<DVec3> = (0..8).map(corner).collect();
+        Solid::from_convex(&ConvexPolyhedron::from_points(&points).expect("a plate"))
+            .expect("a solid")
+    };
+    let walls = Solid::from_pieces(&[plate(4.0, -1.0), plate(4.0, 1.0)]).expect("two plates");
+    let (middle, here) = (plate(1.0, 0.0), Pose::IDENTITY);
+    let options = FreeOptions::default().with_no_tolerance();
+    let free =
+        FreeDirections::compute(&middle.at(here), &walls.at(here), options).expect("an answer");
+    assert!(free.is_complete() && free.arcs().len() == 1 && !free.is_blocked());
+    let outcome =
+        |free: &FreeDirections| FreeRecord::from_directions(free, |_| [None, None]).outcome;
+    assert_eq!(outcome(&free), Ending::Free);
+    let proof = free.proof();
+    let proof = FreeProof { cells: divided_along(&proof.cells, normal, 10), ..proof };
+    let many = FreeDirections::from_trusted_proof(&middle.at(here), &walls.at(here), &proof);
+    let many = many.expect("a proof");
+    assert!(many.is_complete() && many.arcs().is_empty() && !many.is_blocked());
+    assert!(many.free_among_undecided().is_empty() && many.regions().is_empty());
+    assert_eq!(outcome(&many), Ending::Free);
 }

@@ -234,6 +234,16 @@ impl<'a> FreeDirections<'a> {
         })
     }
 
+    /// Checks whether it is certain that some direction is free. Unlike [`Self::arcs`] and [`Self::points`], this has
+    /// no limit of pieces. Returns `false` if only undecided directions may be free.
+    pub fn has_free_direction(&self) -> bool {
+        self.leaf_cells().any(|(cell, state)| match state {
+            CellState::Open(pairs) => remainder_of(&self.bodies, cell, pairs)
+                .is_ok_and(|remainder| !remainder.pieces.is_empty()),
+            _ => false,
+        })
+    }
+
     /// Checks whether no cell is undecided.
     pub fn is_complete(&self) -> bool {
         self.leaf_cells().all(|(_, state)| !matches!(state, CellState::Undecided(_)))

@@ -43,10 +43,11 @@ use colltrans_solid::{SolidCast, SolidPairSearch, SolidSteps};
 use body::StoredBody;
 pub use case::MotionCase;
 pub use error::{ProofError, ProofFileError};
-use file::{Along, Place, Placement, Query};
+use file::{Along, Choices, Place, Placement, Query};
 pub use motion::{MotionStatement, SolidMotionStatement};
 pub use path::PathStatement;
 pub use proven::{Proven, Verify};
+use scene::PlacedScene;
 pub use statement::{Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Stop};
 use statement::{solid_options, with_file_facets};
 
@@ -315,8 +316,8 @@ impl ProofFile {
     /// through others when the solids are offset inwards by half the tolerance each
     /// ([`ShrinkReport::inverted`](colltrans_solid::ShrinkReport::inverted)). At these facets the statement
     /// about the offset solids does not describe the original ones. A body that several pairs or places share
-    /// counts once on each side. The result is 0 if the statement has no tolerance, and for a scene query with
-    /// the default tolerance, which the file does not contain.
+    /// counts once on each side. The result is 0 if the statement has no tolerance. The default tolerance of a
+    /// scene query is not in the file, and is computed from its bodies.
     pub fn inverted_facets(&self) -> [usize; 2] {
         *self.inverted.get_or_init(|| self.count_inverted_facets())
     }
@@ -333,6 +334,20 @@ impl ProofFile {
                 for (pair, statement) in movers.iter().zip(of) {
                     let tolerance = statement.tolerance();
                     (0..2).for_each(|side| add(side, pair[side].body, tolerance));
+                }
+            }
+            (
+                Query::Scene(choices @ Choices { tolerance: None, .. }),
+                Placement::Poses(places),
+                Statement::SceneClearance(of),
+            ) => {
+                // Each pair has its own default tolerance.
+                let scene = PlacedScene::new(&self.bodies, places, *choices);
+                let tolerances = scene.and_then(|scene| scene.tolerances(of.direction));
+                let obstacles = places.iter().skip(1);
+                for (place, tolerance) in obstacles.zip(tolerances.unwrap_or_default()) {
+                    add(0, places[0].body, tolerance);
+                    add(1, place.body, tolerance);
                 }
             }
             (query, Placement::Poses(places), statement) => {

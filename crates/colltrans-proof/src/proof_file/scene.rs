@@ -13,11 +13,13 @@ use super::error::{ProofError, ProofFileError};
 use super::file::{Choices, Place, Placement, Query};
 use super::proven::{Proven, Verify};
 use super::{ProofFile, Statement};
+use colltrans_convex::body::ObstacleId;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::solve::options::Options;
 use colltrans_scene::{Obstacles, SceneProof, SceneQuery};
+use colltrans_solid::SolidCast;
 use colltrans_solid::cast::SolidOptions;
-use colltrans_solid::kinds::{AnyBody, AnyPlaced};
+use colltrans_solid::kinds::{AnyBody, AnyPlaced, ByKind};
 
 /// One body in a scene, with the options of the query.
 #[derive(Debug)]
@@ -42,6 +44,18 @@ impl<'a> PlacedScene<'a> {
         let scene = Self { moving: stored(moving)?.body.at(moving.pose), obstacles, choices };
         scene.checked_query()?;
         Ok(scene)
+    }
+
+    /// Returns the tolerance of the cast at each obstacle, in the order of the file. It is 0 for two convex bodies.
+    pub(super) fn tolerances(&self, direction: DVec3) -> Result<Vec<f64>, ProofFileError> {
+        let query = self.checked_query()?;
+        let tolerance_at = |id| match query.cast_with(id, direction) {
+            Some(ByKind::Solid(cast)) => cast.tolerance(),
+            Some(ByKind::Convex(_)) | None => 0.0,
+        };
+        let mut ids: Vec<ObstacleId> = self.obstacles.iter().map(|(id, ..)| id).collect();
+        ids.sort_unstable();
+        Ok(ids.into_iter().map(tolerance_at).collect())
     }
 
     fn checked_query(&self) -> Result<SceneQuery<'_>, QueryError> {

@@ -7,6 +7,7 @@ use colltrans_motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathC
 use colltrans_proof::{ProofError, ProofFile, ProofFileError, Statement};
 use colltrans_scene::{Obstacles, SceneQuery};
 use colltrans_solid::{AsSolid, Solid, SolidCast, SolidOptions, SolidPair, StartOverlap};
+use colltrans_testkit::bodies::cuboid;
 use colltrans_testkit::oracle::among;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
@@ -484,6 +485,31 @@ fn missing_and_wrong_bounds_of_stop_are_reported() {
     let wrong = ProofFile::from_json(&wrong.to_string()).expect("a proof");
     let told = wrong.check().expect_err("outside").to_string();
     assert!(told.starts_with("the translation 6.5 is not between its bounds, "), "{told}");
+}
+
+#[test]
+fn inverted_facets_at_default_tolerance_of_scene_are_reported() {
+    // A cup that is far smaller than the tolerance of rotated bodies, beside a block.
+    let profile = [[0.0, 0.0], [9.0, 0.0], [9.0, 6.0], [7.0, 6.0], [7.0, 1.0], [0.0, 1.0]];
+    let cup = turned(&profile.map(|point| point.map(|x| x * 1e-14)), 12);
+    let block = cuboid([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]);
+    let both = Solid::from_pieces([&solid(&cup), &block]).expect("a solid");
+    let mut obstacles = Obstacles::new();
+    obstacles.insert(block.clone(), Pose::from_translation(DVec3::Y * 50.0).expect("a pose"));
+    let turn = DQuat::from_rotation_z(0.3);
+    obstacles.insert(both, Pose::new(turn, DVec3::ZERO).expect("a pose"));
+    let place = Pose::from_translation(DVec3::new(0.5, 0.5, 9.0)).expect("a pose");
+    let query = |options| {
+        let query = SceneQuery::new(block.at(place), &obstacles).expect("a query");
+        let query = query.with_solid_options(options);
+        ProofFile::of_scene_clearance(&query, DVec3::NEG_Z).expect("a proof")
+    };
+    let exact = query(SolidOptions::default().with_tolerance(Some(0.0)));
+    assert_eq!(exact.inverted_facets(), [0, 0]);
+    let default = query(SolidOptions::default());
+    let [moving, fixed] = default.inverted_facets();
+    assert!(moving == 0 && fixed > 0, "{moving} {fixed}");
+    assert!(default.to_string().contains(&format!("and {fixed} of fixed ones are")), "{default}");
 }
 
 #[test]

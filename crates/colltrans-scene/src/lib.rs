@@ -293,7 +293,7 @@ impl Obstacles {
 
 impl fmt::Debug for SceneQuery<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Among")
+        f.debug_struct("SceneQuery")
             .field("moving", &self.moving)
             .field("obstacles", &self.obstacles.len())
             .field("ignores", &self.ignored.is_some())

@@ -315,8 +315,10 @@ impl<B: CastBody> Cast<'_, B> {
 
     /// Checks whether the bodies, as closed sets, have a common point in their current poses.
     ///
-    /// The answer is exact for solids, and holds to within rounding error for convex bodies. It does not
-    /// depend on the direction or a tolerance. Convex bodies are cast along the line through both centres,
+    /// With a minimum gap in the options, checks whether their distance is at most the gap. The answer of solids
+    /// is exact without a minimum gap. With one, it is true only if two facets are certainly within the gap, or a
+    /// shell is inside the other body. The answer of convex bodies holds to within rounding error. The answer does
+    /// not depend on the direction or a tolerance. Convex bodies are cast along the line through both centres,
     /// which passes through the centre of the Minkowski difference.
     ///
     /// # Errors

@@ -243,8 +243,8 @@ fn face_each_other(
         && (!sided[1] || is_towards(normal(g), -relative_velocity))
 }
 
-/// Checks whether it is proven that two facets do not face each other during a span, up to rounding errors: the plane of
-/// a facet with an outer side approaches the other facet by less than the error of computed points. This applies to
+/// Checks whether it is proven that two facets do not face each other during a span, up to rounding errors: the plane
+/// of a facet with an outer side approaches the other facet by less than the error of computed points. This applies to
 /// facets that slide along each other.
 ///
 /// The velocity of a point of a body is `u + w k x y`, where `y` leads from the axis to the point. The normal `n`

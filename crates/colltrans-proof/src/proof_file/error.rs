@@ -82,8 +82,8 @@ pub enum ProofFileError {
     NoPairs,
     /// The proofs of several pairs belong to different queries.
     #[error(
-        "pair {pair} is a pair of convex bodies with a larger minimum gap than another pair, or a pair of solids with a \
-         tolerance; of several pairs, all convex ones need the smallest minimum gap, and solids need the tolerance 0"
+        "pair {pair} is a pair of convex bodies with a larger minimum gap than another pair, or a pair of solids with \
+         a tolerance; of several pairs, all convex ones need the smallest minimum gap, and solids need the tolerance 0"
     )]
     Pairs {
         /// Index of the pair.

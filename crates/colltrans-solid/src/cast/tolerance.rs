@@ -154,8 +154,8 @@ fn tolerance_accuracy(tolerance: f64, noise: f64) -> f64 {
 
 /// Brackets the tolerance at which a condition begins to hold, near a guess. The distance from the guess grows by a
 /// factor of 4 in each step. The condition must not hold at the lower end of the range. Returns a tolerance at which it
-/// does not hold, possibly that end, and one at which it does. The latter may be beyond the upper end by less than the last
-/// step. `None` if the condition does not hold up to the upper end.
+/// does not hold, possibly that end, and one at which it does. The latter may exceed the upper end by less than the
+/// last step. `None` if the condition does not hold up to the upper end.
 fn bracket_around(
     guess: f64,
     [mut low, last]: [f64; 2],

@@ -118,9 +118,9 @@ impl<'a> PairFrame<'a> {
         side.matrix * corner.local + side.offset[0]
     }
 
-    /// Returns this scene with the bodies offset by other amounts. The minimum gap remains that of this scene, unless it
-    /// is too small to be distinguished from the rounding errors of the offset bodies. The noise is that of the offset
-    /// bodies, or that of this scene if the latter is larger.
+    /// Returns this scene with the bodies offset by other amounts. The minimum gap remains that of this scene, unless
+    /// it is too small to be distinguished from the rounding errors of the offset bodies. The noise is that of the
+    /// offset bodies, or that of this scene if the latter is larger.
     pub(crate) fn with_offsets(&self, moving: f64, fixed: f64) -> Self {
         let resized = |side: &PlacedBody<'a>, amount| {
             let amount = if side.solid.has_offset() { amount } else { 0.0 };

@@ -292,6 +292,7 @@ pub(super) fn link_poses<'a>(
         }
     }
     let mut places: HashMap<&str, DAffine3> = HashMap::new();
+    let mut positions = HashMap::new();
     for link in robot.children_named("link").filter_map(|link| link.get("name")) {
         // Collects the joints up to a placed link or a root, then places the links downwards.
         let (mut above, mut name) = (Vec::new(), link);
@@ -315,22 +316,17 @@ pub(super) fn link_poses<'a>(
         };
         for (name, joint) in above.into_iter().rev() {
             let refused = |reason| contents_error(source.path, format!("joint {name}"), reason);
-            at = at * joint.origin * joint_motion(source, joints, name, joint).map_err(refused)?;
+            let position = joint_position(source, joints, name, &mut positions).map_err(refused)?;
+            at = at * joint.origin * joint_motion(joint, position).map_err(refused)?;
             places.insert(joint.child, at);
         }
     }
     Ok(places)
 }
 
-/// Returns the motion of a joint at its position.
-fn joint_motion(
-    source: &Source,
-    joints: &Joints,
-    name: &str,
-    joint: &Joint,
-) -> Result<DAffine3, String> {
+/// Returns the motion of a joint at a position.
+fn joint_motion(joint: &Joint, position: f64) -> Result<DAffine3, String> {
     let kind = joint.element.required("type")?;
-    let position = joint_position(source, joints, name, 8)?;
     let axis = match joint.element.first_child("axis") {
         Some(axis) => axis.numbers::<3>("xyz")?.unwrap_or([1.0, 0.0, 0.0]),
         None => [1.0, 0.0, 0.0],
@@ -350,23 +346,39 @@ fn joint_motion(
     }
 }
 
-/// Returns the position of a joint: the given one, or that computed from the joint that it mimics, or 0.
-fn joint_position(
+/// Returns the position of a joint: the given one, or that computed from the joint that it mimics, or 0. `known` has
+/// the positions of joints that mimic others, as far as they were computed. Chains of mimic elements have any length.
+///
+/// # Errors
+/// Returns an error if mimic elements form a cycle, or for an attribute of a mimic element that is missing or invalid.
+fn joint_position<'a>(
     source: &Source,
-    joints: &Joints,
-    name: &str,
-    depth: usize,
+    joints: &Joints<'a>,
+    name: &'a str,
+    known: &mut HashMap<&'a str, f64>,
 ) -> Result<f64, String> {
-    if let Some(given) = source.options.joints.get(name) {
-        return Ok(*given);
-    }
-    let mimic = joints.get(name).and_then(|joint| joint.element.first_child("mimic"));
-    let Some(mimic) = mimic.filter(|_| depth > 0) else { return Ok(0.0) };
-    let value = joint_position(source, joints, mimic.required("joint")?, depth - 1)?;
-    let number = |name: &str, default: f64| {
-        mimic.numbers::<1>(name).map(|found| found.map_or(default, |[x]| x))
+    // Collects the mimicking joints down to one whose position is known, then computes theirs upwards.
+    let (mut mimicking, mut at) = (Vec::new(), name);
+    let mut position = loop {
+        if let Some(position) = source.options.joints.get(at).or_else(|| known.get(at)) {
+            break *position;
+        }
+        let mimic = joints.get(at).and_then(|joint| joint.element.first_child("mimic"));
+        let Some(mimic) = mimic else { break 0.0 };
+        if mimicking.len() == joints.len() {
+            return Err("mimic elements form a cycle".into());
+        }
+        mimicking.push((at, mimic));
+        at = mimic.required("joint")?;
     };
-    Ok(value * number("multiplier", 1.0)? + number("offset", 0.0)?)
+    for (name, mimic) in mimicking.into_iter().rev() {
+        let number = |name: &str, default: f64| {
+            mimic.numbers::<1>(name).map(|found| found.map_or(default, |[x]| x))
+        };
+        position = position * number("multiplier", 1.0)? + number("offset", 0.0)?;
+        known.insert(name, position);
+    }
+    Ok(position)
 }
 
 /// Opens a mesh by the reference in the robot.

@@ -172,6 +172,41 @@ fn joint_values_place_links_of_robot() {
 }
 
 #[test]
+fn mimic_chain_of_any_length_places_links_and_cycle_is_rejected() {
+    // Twenty sliders along x on one base. Each but the first mimics the previous one with the offset 1.
+    let robot = |first: &str| {
+        let shape = "<collision><geometry><box size='1 1 1'/></geometry></collision>";
+        let mut text = format!("<robot name='r'><link name='base'>{shape}</link>");
+        for k in 0..20 {
+            let mimic = match k {
+                0 => first.to_owned(),
+                _ => format!("<mimic joint='j{}' offset='1'/>", k - 1),
+            };
+            text += &format!(
+                "<link name='l{k}'>{shape}</link><joint name='j{k}' type='prismatic'><parent link='base'/>\
+                 <child link='l{k}'/><axis xyz='1 0 0'/>{mimic}</joint>"
+            );
+        }
+        text + "</robot>"
+    };
+    let (chain, ring) = (robot(""), robot("<mimic joint='j19'/>"));
+    let folder = folder(&[("chain.urdf", &chain), ("ring.urdf", &ring)]);
+    let mut options = ReadOptions::default();
+    options.joints.insert("j0".into(), 0.25);
+    let assembly = read(folder.path().join("chain.urdf"), &options).unwrap();
+    for k in 0..20 {
+        let x = 0.25 + f64::from(k);
+        assert_bounds(
+            bounds(&assembly, &format!("l{k}")),
+            [x - 0.5, -0.5, -0.5],
+            [x + 0.5, 0.5, 0.5],
+        );
+    }
+    let message = open(folder.path().join("ring.urdf")).unwrap_err().to_string();
+    assert!(message.contains("joint j0") && message.contains("form a cycle"), "{message}");
+}
+
+#[test]
 fn entries_of_missing_parts_are_dropped_with_notes() {
     let manifest = r#"
         ignore = [["a", "gone"]]

@@ -18,8 +18,10 @@ pub(crate) enum ScrewOutcome {
     /// The parts never meet, neither on the motion nor along the direction from its end. Holds the number of
     /// node pairs that the search visited.
     Free(u64),
-    /// The parts meet, or the search is undecided. Holds the fraction of the motion up to which they do not
-    /// meet. It is 1 if the whole motion is free and the parts meet along the direction from its end.
+    /// The parts meet, or the search is undecided. Holds the fraction of the motion up to which they are proven not
+    /// to meet. If only a later test found an overlap, holds the fraction at which they overlap, and no earlier
+    /// fraction is claimed to be free. It is 1 if the whole motion is free and the parts meet along the direction
+    /// from its end.
     Blocked(f64),
     /// The parts overlap at the start of the motion. Holds the least tolerance that removes the overlap, if
     /// any.
@@ -74,7 +76,7 @@ impl Bodies<'_> {
             MotionOutcome::Free(free) => free.steps.nodes,
             _ => return Ok(ScrewOutcome::Blocked(0.0)),
         };
-        // Overlap is tested again at a few places.
+        // Overlap is tested again at a few places. Callers only report the fraction of a blocked motion.
         for share in RECHECKED_SHARES {
             if self.cast_after_turning(pair, (motion, d), tolerance, share)?.overlaps() {
                 return Ok(ScrewOutcome::Blocked(share));

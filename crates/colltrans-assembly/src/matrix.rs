@@ -84,11 +84,11 @@ pub struct ContactMatrix<'a> {
 impl std::fmt::Debug for ContactMatrix<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let Self { directions, among, complete_meetings, .. } = self;
-        let mut fields = f.debug_struct("Matrix");
+        let mut fields = f.debug_struct("ContactMatrix");
         fields
             .field("directions", directions)
             .field("among", among)
-            .field("whole", complete_meetings);
+            .field("complete_meetings", complete_meetings);
         fields.finish_non_exhaustive()
     }
 }

@@ -179,7 +179,7 @@ impl Interlocked {
                  are drawn: a smaller tolerance may part them."
             ),
             _ => format!(
-                "As they are drawn, {names} run into each other{more}, and such parts are not moved apart."
+                "With this fit, {names} run into each other{more}, and such parts are not moved apart."
             ),
         })
     }

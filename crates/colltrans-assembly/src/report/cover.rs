@@ -97,8 +97,8 @@ fn result_section(r: &Report) -> Markup {
                 @match (apart, remaining) {
                     (true, 1) => { "One pair of parts is nearer to each other than the minimum gap" }
                     (true, pairs) => { (pairs) " pairs of parts are nearer to each other than the minimum gap" }
-                    (false, 1) => { "One pair of parts runs into each other as they are drawn" }
-                    (false, pairs) => { (pairs) " pairs of parts run into each other as they are drawn" }
+                    (false, 1) => { "One pair of parts runs into each other with this fit" }
+                    (false, pairs) => { (pairs) " pairs of parts run into each other with this fit" }
                 }
                 @if remaining == 1 { ", and is" } @else { ", and are" }
                 " moved as one. The section after the steps lists them with suggestions."

@@ -3,6 +3,7 @@
 use colltrans_convex::{
     Cast, CertificateError, Clearance, ConvexPolyhedron, Pair, Pose, Separation,
 };
+use colltrans_motion::{Motion, MotionCast};
 use colltrans_proof::ProofFile;
 use colltrans_solid::{AsSolid, Solid, SolidOptions, StartOverlap};
 use colltrans_testkit::bodies::{at_xyz as pose, cube};
@@ -10,7 +11,7 @@ use colltrans_testkit::oracle::proofs::checkers::{RationalChecker, Verdict, veri
 use colltrans_testkit::oracle::proofs::{Campaign, KINDS};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::tally::Tally;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
 /// Rounding error of one operation.
@@ -145,6 +146,36 @@ fn both_checkers_reject_values_outside_specification() {
     file = contacts;
     file["query"]["cast"]["min_gap"] = json!(-1.0);
     assert_refused(&file, &mut fractions);
+}
+
+/// A proof of solids holds only for continuous motions, because it tests only at the start whether one contains the
+/// other.
+#[test]
+fn both_checkers_reject_motion_that_jumps() {
+    let mut fractions = start_fractions();
+    let turned = |x: f64, y: f64, angle: f64| {
+        let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 2.0) / 3.0, angle);
+        Pose::new(turn, DVec3::new(x, y, 0.25)).expect("a pose")
+    };
+    let poses = [turned(5.0, 0.0, 0.3), turned(6.0, 1.0, 1.1), turned(5.5, -3.0, -0.4)];
+    let (cube, motion) = (cube(), Motion::through_poses(&poses).expect("a motion"));
+    let rest = Motion::at_rest(Pose::IDENTITY);
+    let cast = MotionCast::new(cube.with_motion(&motion), cube.with_motion(&rest)).expect("a cast");
+    let convex = ProofFile::of_motion(&cast, &cast.first_contact().expect("an answer"));
+    let cast = MotionCast::between_any(cube.with_motion(&motion), cube.with_motion(&rest));
+    let solids = ProofFile::with_solid_motion(&cast.expect("a cast")).expect("a proof").1;
+    for file in [convex, solids] {
+        let mut file: Value = serde_json::from_str(&file.to_json()).expect("JSON");
+        for verdict in verdicts(&file, &mut fractions) {
+            assert!(
+                matches!(verdict, Verdict::Holds | Verdict::HoldsPartly),
+                "{verdict:?}: {file}"
+            );
+        }
+        let piece = file.pointer_mut("/placement/motions/0/0/motion/1").expect("a piece");
+        piece["start"]["translation"][0] = json!(6.0 + 1e-10);
+        assert_refused(&file, &mut fractions);
+    }
 }
 
 #[test]

@@ -333,11 +333,14 @@ impl Certificate {
 
     /// Checks the certificate for [`Cast::verify`](crate::Cast::verify), with the minimum gap `min_gap` or 0.
     /// Returns the proven difference of the bounds.
+    ///
+    /// The bodies have the gap where their cores have it in addition to both radii.
     pub(crate) fn verify_with_gap(
         &self,
         setting: &Setting,
         min_gap: f64,
     ) -> Result<f64, CertificateError> {
+        let [least_gap, min_gap] = setting.core_gap_bounds(min_gap);
         let normal = self.normal;
         let steepness = normal.dot(setting.direction);
         let unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
@@ -349,7 +352,7 @@ impl Certificate {
         }
         let noise = Noise::for_size(setting.size() + min_gap);
         let gap_bound =
-            (min_gap > 0.0).then(|| self.upper_bound_within_gap(setting, min_gap, noise));
+            (min_gap > 0.0).then(|| self.upper_bound_within_gap(setting, least_gap, noise));
         let upper = match gap_bound {
             Some(Ok(upper)) => upper,
             Some(Err(error)) if !noise.is_below_noise(min_gap) => return Err(error),
@@ -512,7 +515,9 @@ impl Separation {
         min_gap: f64,
     ) -> Result<f64, CertificateError> {
         check_lateral_normal(setting, self.normal)?;
-        let (proven, claimed) = (shadow_gap(setting, self.normal), self.margin);
+        let [_, radii] = setting.core_gap_bounds(0.0);
+        let (shadows, claimed) = (shadow_gap(setting, self.normal), self.margin);
+        let proven = if radii == 0.0 { shadows } else { (shadows - radii).next_down() };
         if claimed > min_gap && claimed <= proven {
             Ok(proven)
         } else {

@@ -104,7 +104,8 @@ pub struct NearPoints {
     /// Upper bound of the distance of the two points, in world units, rounded up.
     ///
     /// If it is 0, the differences of the pairs enclose the origin, so the bodies meet. The weights prove
-    /// nothing in this case.
+    /// nothing in this case, except for rounded bodies: there the bodies also meet if the distance of the two points,
+    /// which are points of the cores, is at most the sum of the radii.
     pub distance: f64,
 }
 
@@ -130,8 +131,12 @@ pub struct Depth {
     /// Direction of the separating translation of the moving body, a unit vector in the world. It proves the
     /// upper bound.
     pub direction: DVec3,
-    /// Proof of the lower bound.
+    /// Proof of the lower bound: for rounded bodies, of the depth of their cores.
     pub enclosure: Enclosure,
+    /// For rounded bodies, points of the cores. If their distance is at most `d`, the depth is at least the sum of the
+    /// radii less `d`. Used if `enclosure` is empty.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub near: Option<NearPoints>,
     /// Work done. A proof in a file omits this field.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Steps::is_zero"))]
     pub steps: Steps,

@@ -98,6 +98,22 @@ pub enum BuildError {
         /// Dimension of the body.
         dimension: u8,
     },
+    /// The radius of a rounded body is negative, not finite or out of range, or the feature `min-gap` is missing.
+    #[error(
+        "invalid radius {radius:?}; accepted: 0, or 2^-200 to 2^200 with the feature `min-gap`"
+    )]
+    Radius {
+        /// The radius as given.
+        radius: f64,
+    },
+    /// The operation is not defined for a rounded body.
+    #[error("{operation} is not possible for a body that is rounded by a radius of {radius:?}")]
+    Rounded {
+        /// Name of the operation.
+        operation: &'static str,
+        /// Radius of the body.
+        radius: f64,
+    },
     /// The tolerated depth is negative or not a number.
     #[error("invalid tolerance {tolerance}; accepted: not negative")]
     Tolerance {

@@ -35,10 +35,14 @@ impl Contact {
         let certificate = &self.certificate;
         let [p, q] = setting.weighted_points(&certificate.pairs, &certificate.weights);
         let origin = setting.translations[0];
-        WitnessPoints {
-            on_moving: setting.moving_matrix * p + origin,
-            on_fixed: setting.fixed_matrix * q + setting.offset + origin,
-        }
+        let cores = [
+            setting.moving_matrix * p + origin,
+            setting.fixed_matrix * q + setting.offset + origin,
+        ];
+        let between = cores[1] - (cores[0] + setting.direction * self.translation);
+        let normal = between.try_normalize().unwrap_or(self.normal);
+        let [on_moving, on_fixed] = setting.surface_points(cores, normal);
+        WitnessPoints { on_moving, on_fixed }
     }
 
     /// Computes the features of the bodies that touch.
@@ -50,7 +54,8 @@ impl Contact {
     /// If `cast` is about other bodies, which lack the vertices of the certificate.
     pub fn features(&self, cast: &Cast) -> Features {
         let setting = &cast.setting;
-        let noise = Noise::for_size(setting.size() + cast.options.min_gap).point_error();
+        let [_, gap] = setting.core_gap_bounds(cast.options.min_gap);
+        let noise = Noise::for_size(setting.size() + gap).point_error();
         let outward = [setting.moving_normal(self.normal), -setting.fixed_normal(self.normal)];
         let [p, q] = self.support.indices();
         Features {

@@ -433,8 +433,8 @@ impl Cast<'_> {
         self.search_first_contact(&Focus::NONE, &last, &mut next, observer)
     }
 
-    /// Searches the first contact or, if the options have a minimum gap, the first translation at which the
-    /// distance is the gap.
+    /// Searches the first contact or, if the options have a minimum gap or a body is rounded, the first
+    /// translation at which the distance of the cores is the sum of the gap and both radii.
     ///
     /// The search starts from the result `last` of an earlier cast, as far as `focus` allows. `next` receives
     /// the start of a later cast.
@@ -447,7 +447,7 @@ impl Cast<'_> {
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
         let Self { setting, options } = self;
-        if cfg!(feature = "min-gap") && options.min_gap != 0.0 {
+        if cfg!(feature = "min-gap") && (options.min_gap != 0.0 || setting.is_rounded()) {
             return min_gap::convex::cast_with_min_gap(
                 setting, options, focus, last, next, observer,
             );

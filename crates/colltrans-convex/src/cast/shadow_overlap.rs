@@ -10,7 +10,7 @@ use crate::answer::{CertificateError, check_lateral_normal, shadow_gap};
 #[inline]
 pub fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
     let gap = shadow_gap(&cast.setting, normal);
-    let min_gap = cast.options().min_gap;
+    let [_, min_gap] = cast.setting.core_gap_bounds(cast.options().min_gap);
     // The negation of a gap is exact.
     if min_gap > 0.0 { (min_gap - gap).next_up() } else { 0.0 - gap }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{PairProof, verify};
+use super::{PairProof, rounded, verify};
 use crate::answer::{
     CertificateError, Depth, Distance, Enclosure, NearPoints, StartedFrom, Steps, Within,
 };
@@ -52,25 +52,33 @@ impl Pair<'_> {
     #[doc(hidden)]
     #[inline]
     pub fn depth_until(&self, enough: f64) -> Result<Depth, QueryError> {
-        let difference = Difference::new(&self.bodies);
-        let mut found = nearest_points(&difference, &difference.depth_start(), None);
-        found.supports += 1;
-        if let Some(plane) = found.gap_plane(&difference).filter(|plane| plane.gap.gap > 0.0) {
-            let (direction, enclosure) = (-plane.gap.normal, Enclosure::default());
-            let steps = found.steps();
-            return Ok(Depth { lower: 0.0, upper: 0.0, direction, enclosure, steps });
+        if self.bodies.is_rounded() {
+            return rounded::depth(&self.bodies, enough);
         }
-        let best = penetration_depth(&difference, &found, enough);
-        let (lower, upper) = (best.lower, best.upper);
-        let tolerance = MAX_BOUND_GAP * difference.noise.point_error() + best.excess;
-        if lower <= enough && upper - lower > tolerance {
-            let reason = Stalled::Distance { lower, upper, tolerance };
-            return Err(QueryError::NotConverged { reason });
-        }
-        let (direction, enclosure) = (best.outward, best.enclosure);
-        let steps = Steps { supports: best.supports, ..Steps::default() };
-        Ok(Depth { lower, upper, direction, enclosure, steps })
+        core_depth(&self.bodies, enough)
     }
+}
+
+/// Computes the penetration depth of the cores of two bodies. See [`Pair::depth_until`].
+pub(super) fn core_depth(bodies: &TwoBodies, enough: f64) -> Result<Depth, QueryError> {
+    let difference = Difference::new(bodies);
+    let mut found = nearest_points(&difference, &difference.depth_start(), None);
+    found.supports += 1;
+    if let Some(plane) = found.gap_plane(&difference).filter(|plane| plane.gap.gap > 0.0) {
+        let (direction, enclosure) = (-plane.gap.normal, Enclosure::default());
+        let steps = found.steps();
+        return Ok(Depth { lower: 0.0, upper: 0.0, direction, enclosure, near: None, steps });
+    }
+    let best = penetration_depth(&difference, &found, enough);
+    let (lower, upper) = (best.lower, best.upper);
+    let tolerance = MAX_BOUND_GAP * difference.noise.point_error() + best.excess;
+    if lower <= enough && upper - lower > tolerance {
+        let reason = Stalled::Distance { lower, upper, tolerance };
+        return Err(QueryError::NotConverged { reason });
+    }
+    let (direction, enclosure) = (best.outward, best.enclosure);
+    let steps = Steps { supports: best.supports, ..Steps::default() };
+    Ok(Depth { lower, upper, direction, enclosure, near: None, steps })
 }
 
 impl PairBody for ConvexPolyhedron {
@@ -82,8 +90,10 @@ impl PairBody for ConvexPolyhedron {
 
     fn within(pair: &Pair<'_>, length: f64) -> Result<(Within, Steps), QueryError> {
         check_length(length)?;
-        let difference = Difference::new(&pair.bodies);
-        let mut found = nearest_points(&difference, &NearestPairs::default(), Some(length));
+        let bodies = &pair.bodies;
+        let difference = Difference::new(bodies);
+        let [_, between_cores] = bodies.core_gap_bounds(length);
+        let mut found = nearest_points(&difference, &NearestPairs::default(), Some(between_cores));
         let mut decided = decide_within(&difference, &found, length);
         if decided.is_none() {
             let before = found.supports;
@@ -109,12 +119,13 @@ impl PairBody for ConvexPolyhedron {
 
 /// Returns the decision that the search result proves about a length, `None` if it proves none.
 fn decide_within(difference: &Difference, found: &DescentResult, length: f64) -> Option<Within> {
-    let near = found.near_points(difference);
+    let bodies = difference.bodies;
+    let near = rounded::near_points(bodies, found.near_points(difference));
     if near.distance <= length {
         return Some(Within::Closer(near));
     }
-    let plane = found.separating_plane(difference)?;
-    (plane.gap.gap > length).then_some(Within::Farther(plane.gap))
+    let plane = rounded::plane_gap(bodies, found.separating_plane(difference)?.gap);
+    (plane.gap > length).then_some(Within::Farther(plane))
 }
 
 /// Computes the distance by a search that starts from `pairs`. Replaces `pairs` by the pairs of the nearest points.
@@ -153,7 +164,7 @@ fn distance_of_search(
         return Err(QueryError::NotConverged { reason });
     }
     let [on_moving, on_fixed] = nearest_points_in_world(bodies, &near);
-    Ok(Distance {
+    let distance = Distance {
         lower,
         upper: near.distance,
         on_moving,
@@ -164,7 +175,8 @@ fn distance_of_search(
         near,
         gap: plane.map(|plane| plane.gap),
         steps: found.steps(),
-    })
+    };
+    Ok(if bodies.is_rounded() { rounded::distance(bodies, distance) } else { distance })
 }
 
 /// Returns the nearest points of the moving and of the fixed body, in the world, rounded.

@@ -1,6 +1,7 @@
 //! Queries about two placed bodies without a direction: distance, proximity and penetration depth.
 
 mod convex;
+mod rounded;
 mod verify;
 
 use crate::answer::{

@@ -11,7 +11,8 @@ use colltrans_kernel::{height_bounds, noise, volume};
 pub(super) fn verify_plane(bodies: &TwoBodies, plane: &PlaneGap) -> Result<f64, CertificateError> {
     let &PlaneGap { normal, gap } = plane;
     check_unit_normal(normal)?;
-    let proven = bodies.proven_gap(normal);
+    let proven =
+        super::rounded::plane_gap(bodies, PlaneGap { normal, gap: bodies.proven_gap(normal) }).gap;
     if gap >= 0.0 && gap <= proven {
         Ok(proven)
     } else {
@@ -25,24 +26,51 @@ pub(super) fn verify_points(
     bodies: &TwoBodies,
     points: &NearPoints,
 ) -> Result<f64, CertificateError> {
-    let NearPoints { pairs, weights, distance } = points;
-    check_vertices_exist(bodies, pairs)?;
-    let terms = pairs.map(|pair| bodies.terms(pair));
-    if *distance == 0.0 {
-        let met = volume::contains_origin(&terms, bodies.size());
+    let claimed = points.distance;
+    if claimed == 0.0 && !bodies.is_rounded() {
+        check_vertices_exist(bodies, &points.pairs)?;
+        let met = do_pairs_surround_origin(bodies, points);
         return if met { Ok(0.0) } else { Err(CertificateError::StartClaim) };
+    }
+    let [radii, _] = bodies.core_gap_bounds(0.0);
+    let apart = core_distance(bodies, points)?;
+    let proven = match radii {
+        0.0 => apart,
+        _ if apart <= radii => 0.0,
+        _ => (apart - radii).next_up(),
+    };
+    if claimed >= proven {
+        Ok(proven)
+    } else if claimed == 0.0 {
+        Err(CertificateError::StartClaim)
+    } else {
+        Err(CertificateError::Bound { proven, claimed })
+    }
+}
+
+/// Returns an upper bound of the distance of the cores that two points prove, 0 if the pairs enclose the origin.
+/// Only the distance of rounded bodies may be claimed to be 0 by points that are apart.
+pub(super) fn core_distance(
+    bodies: &TwoBodies,
+    points: &NearPoints,
+) -> Result<f64, CertificateError> {
+    let NearPoints { pairs, weights, .. } = points;
+    check_vertices_exist(bodies, pairs)?;
+    if bodies.is_rounded() && points.distance == 0.0 && do_pairs_surround_origin(bodies, points) {
+        return Ok(0.0);
     }
     if !are_weights(weights) {
         return Err(CertificateError::PointWeights { weights: *weights });
     }
+    let terms = pairs.map(|pair| bodies.terms(pair));
     let sum: f64 = weights.iter().sum();
     let mean: DVec3 = terms.iter().zip(weights).map(|(m, w)| m.rounded_point() * (w / sum)).sum();
-    let proven = (mean.length() + bodies.noise().checked_mean_length_margin()).next_up();
-    if *distance >= proven {
-        Ok(proven)
-    } else {
-        Err(CertificateError::Bound { proven, claimed: *distance })
-    }
+    Ok((mean.length() + bodies.noise().checked_mean_length_margin()).next_up())
+}
+
+/// Checks whether the differences of four pairs of existing vertices enclose the origin.
+fn do_pairs_surround_origin(bodies: &TwoBodies, points: &NearPoints) -> bool {
+    volume::contains_origin(&points.pairs.map(|pair| bodies.terms(pair)), bodies.size())
 }
 
 /// Returns the depth that the enclosure proves, 0 if it is empty.
@@ -52,12 +80,20 @@ pub(super) fn verify_depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, Cer
     check_unit_normal(depth.direction)?;
     let [square, _] = height_bounds::dot_bounds(depth.direction, depth.direction);
     let reach = -bodies.distance_along(-depth.direction);
-    let upper = (reach / square.sqrt().next_down()).next_up().max(0.0);
+    let upper = (reach / square.sqrt().next_down()).next_up();
+    let [least, most] = bodies.core_gap_bounds(0.0);
+    let upper = if most == 0.0 { upper } else { (upper + most).next_up() }.max(0.0);
     if depth.upper.is_nan() || depth.upper < upper {
         return Err(CertificateError::Bound { proven: upper, claimed: depth.upper });
     }
-    let claims_none = depth.enclosure == Enclosure::default();
-    let proven = if claims_none { 0.0 } else { enclosed_radius(bodies, &depth.enclosure)? };
+    let proven = if depth.enclosure != Enclosure::default() {
+        let radius = enclosed_radius(bodies, &depth.enclosure)?;
+        if least == 0.0 { radius } else { (radius + least).next_down() }
+    } else if let Some(near) = &depth.near {
+        (least - core_distance(bodies, near)?).next_down().max(0.0)
+    } else {
+        0.0
+    };
     if depth.lower >= 0.0 && depth.lower <= proven {
         Ok(proven)
     } else {

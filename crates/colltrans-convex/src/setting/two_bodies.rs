@@ -17,6 +17,17 @@ use colltrans_kernel::orientation::PointTerms;
 use colltrans_kernel::pose::MAX_STRETCH;
 use colltrans_kernel::range::MIN_MAGNITUDE;
 
+/// Returns lower and upper bounds of a sum, equal if it is exact.
+#[inline]
+fn sum_bounds(a: f64, b: f64) -> [f64; 2] {
+    let sum = a + b;
+    match sum_error(a, b, sum) {
+        0.0 => [sum; 2],
+        error if error > 0.0 => [sum, sum.next_up()],
+        _ => [sum.next_down(), sum],
+    }
+}
+
 /// Two placed bodies in the setting frame.
 #[derive(Debug)]
 #[derive_where(Clone, Copy)]
@@ -172,6 +183,36 @@ impl<B: VertexHull> TwoBodies<'_, B> {
 }
 
 impl TwoBodies<'_> {
+    /// Returns lower and upper bounds of the sum of `min_gap` and the radii of both bodies, in world units. They
+    /// are equal if the sum is exact.
+    ///
+    /// The distance of rounded bodies is at least `min_gap` where that of their cores is at least this sum.
+    #[inline]
+    pub fn core_gap_bounds(&self, min_gap: f64) -> [f64; 2] {
+        let radii = [self.moving.radius(), self.fixed.radius()];
+        if radii == [0.0; 2] {
+            return [min_gap; 2];
+        }
+        let [low, high] = sum_bounds(radii[0], radii[1]);
+        [sum_bounds(low, min_gap)[0], sum_bounds(high, min_gap)[1]]
+    }
+
+    /// Checks whether a body is rounded.
+    #[inline]
+    pub(crate) fn is_rounded(&self) -> bool {
+        self.moving.radius() + self.fixed.radius() != 0.0
+    }
+
+    /// Returns the points of the surfaces of the rounded bodies that correspond to points of their cores, in the
+    /// world: each moved by its body's radius towards the other body, along the unit vector `normal`.
+    #[inline]
+    pub(crate) fn surface_points(&self, [p, q]: [DVec3; 2], normal: DVec3) -> [DVec3; 2] {
+        if !self.is_rounded() {
+            return [p, q];
+        }
+        [p + normal * self.moving.radius(), q - normal * self.fixed.radius()]
+    }
+
     /// Returns the vertices of a pair, in the frames of the moving and of the fixed body.
     #[inline]
     pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {

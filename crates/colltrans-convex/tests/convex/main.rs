@@ -18,6 +18,7 @@ mod published_distances;
 mod published_failures;
 mod replay;
 mod rims;
+mod rounded;
 mod sliding;
 mod tracker;
 mod work;

@@ -1,7 +1,8 @@
-//! Judges casts with a minimum gap in exact arithmetic.
+//! Judges casts with a minimum gap, and casts of rounded bodies, in exact arithmetic.
 //!
-//! Notation. `D(t)` is the distance of the bodies after a translation by `t d`, a convex function, from
-//! [`distance()`]. `g` is the gap, and `m` the distance of the bodies' shadows along `d`, the minimum of `D`.
+//! Notation. `D(t)` is the distance of the cores of the bodies after a translation by `t d`, a convex function, from
+//! [`distance()`]. `g` is the gap of the cores: the minimum gap plus both radii. Bodies that are not rounded are
+//! their own cores. `m` the distance of the bodies' shadows along `d`, the minimum of `D`.
 //! All numbers of an answer or proof are taken as exact.
 //!
 //! - *Contact.* `D(lower) >= g >= D(upper)` and `lower <= upper`. Because `D` is convex, the first `t` with
@@ -25,6 +26,11 @@ const UNSURE: f64 = 12.0;
 #[derive(Debug)]
 pub struct GapJudge<'a> {
     cast: Cast<'a>,
+    /// The exact gap of the cores.
+    gap: Dyadic,
+    /// The sum of the radii, exact.
+    radii: Dyadic,
+    /// The gap of the cores, rounded.
     min_gap: f64,
     moving: Vec<Vector>,
     fixed: Vec<Vector>,
@@ -47,11 +53,14 @@ impl<'a> GapJudge<'a> {
         let [p, q] = [cast.moving_pose(), cast.fixed_pose()];
         let moving = place(p.matrix(), p.translation(), cast.moving().vertices());
         let fixed = place(q.matrix(), q.translation(), cast.fixed().vertices());
-        let min_gap = cast.options().min_gap;
+        let [r, s] = [cast.moving(), cast.fixed()].map(|body| Dyadic::new(body.radius()));
+        let radii = &r + &s;
+        let gap = &Dyadic::new(cast.options().min_gap) + &radii;
+        let min_gap = gap.to_f64();
         let size = size([cast.moving().vertices(), cast.fixed().vertices()], [&p, &q]) + min_gap;
         let noise = 16.0 * f64::EPSILON * size.max(colltrans::MIN_MAGNITUDE);
         let shadows = distance_of_shadows(&moving, &fixed, cast.direction());
-        Self { cast, min_gap, moving, fixed, shadows, noise }
+        Self { cast, gap, radii, min_gap, moving, fixed, shadows, noise }
     }
 
     /// Checks an outcome with its proof. Returns the difference of its bounds.
@@ -89,7 +98,7 @@ impl<'a> GapJudge<'a> {
     pub fn check_clearance(&self, clearance: &Clearance) -> Result<(), Objection> {
         let back = self.cast.reversed();
         let now = self.distance_at(&self.cast, 0.0);
-        let gap = exact_square_ratio(self.min_gap);
+        let gap = self.square_of_gap();
         match clearance {
             Clearance::Blocked { distance, contact } => {
                 self.check_contact(&self.cast, contact)?;
@@ -119,7 +128,7 @@ impl<'a> GapJudge<'a> {
         let [lower, upper] = [proof.lower, proof.upper];
         let t = contact.translation;
         require!(lower <= t && t <= upper, "{lower:e} <= {t:e} <= {upper:e} does not hold");
-        let gap = exact_square_ratio(self.min_gap);
+        let gap = self.square_of_gap();
         require!(self.distance_at(cast, lower) >= gap, "nearer than the gap at {lower:e}");
         self.check_plane(cast, proof.normal, lower)?;
         let verified = cast.verify(&proof).map_err(|e| Objection(e.to_string()))?;
@@ -141,6 +150,11 @@ impl<'a> GapJudge<'a> {
         self.min_gap <= 8.0 * self.noise
     }
 
+    /// Returns the exact square of the gap of the cores.
+    fn square_of_gap(&self) -> Ratio {
+        Ratio::new(&self.gap * &self.gap, Dyadic::new(1.0))
+    }
+
     /// Returns the squared distance after a translation.
     fn distance_at(&self, cast: &Cast, t: f64) -> Ratio {
         let by = Vector::new(cast.direction()).times(&Dyadic::new(t));
@@ -154,8 +168,7 @@ impl<'a> GapJudge<'a> {
         let along = n.dot(&Vector::new(cast.direction()));
         require!(along.is_positive(), "the normal {normal} is not along the direction");
         let left = &self.along(&n) - &(&along * &Dyadic::new(lower));
-        let proven =
-            !left.is_negative() && &left * &left >= &exact_square(self.min_gap) * &n.dot(&n);
+        let proven = !left.is_negative() && &left * &left >= &(&self.gap * &self.gap) * &n.dot(&n);
         require!(proven, "the plane does not prove {lower:e}");
         Ok(())
     }
@@ -164,9 +177,15 @@ impl<'a> GapJudge<'a> {
     fn check_separation(&self, of: &Separation) -> Result<(), Objection> {
         let n = Vector::new(of.normal);
         let along = self.along(&n);
-        require!(Dyadic::new(of.margin) <= along, "a margin of {:e}", of.margin);
-        let beyond =
-            along.is_positive() && &along * &along > &exact_square(self.min_gap) * &n.dot(&n);
+        let square_along = |gap: &Dyadic| &(gap * gap) * &n.dot(&n);
+        if self.radii.is_zero() {
+            require!(Dyadic::new(of.margin) <= along, "a margin of {:e}", of.margin);
+        } else {
+            let claimed = square_along(&(&Dyadic::new(of.margin) + &self.radii));
+            require!(&along * &along >= claimed, "a margin of {:e}", of.margin);
+        }
+        require!(of.margin > self.cast.options().min_gap, "a margin that is not above the gap");
+        let beyond = along.is_positive() && &along * &along > square_along(&self.gap);
         require!(beyond, "a plane no farther off than the gap");
         self.cast.verify(of).map_err(|e| Objection(e.to_string()))?;
         Ok(())
@@ -190,14 +209,4 @@ fn distance_of_shadows(moving: &[Vector], fixed: &[Vector], direction: DVec3) ->
         points.iter().map(|p| p.times(&square).minus(&d.times(&p.dot(&d)))).collect()
     };
     distance(&flat(moving), &flat(fixed)).to_f64() / square.to_f64()
-}
-
-/// Returns the exact square.
-fn exact_square(x: f64) -> Dyadic {
-    &Dyadic::new(x) * &Dyadic::new(x)
-}
-
-/// Returns the exact square as a ratio.
-fn exact_square_ratio(x: f64) -> Ratio {
-    Ratio::from_f64(x).times(&Ratio::from_f64(x))
 }

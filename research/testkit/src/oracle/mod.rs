@@ -5,7 +5,7 @@
 //! linear programme ([`simplex`]) and the exact lateral overlap ([`shadow`]). Other modules judge:
 //!
 //! - [`distance`] the algorithms for distances, [`nearest`] the library's distances and depths, [`min_gap`] casts
-//!   with a minimum gap,
+//!   with a minimum gap, [`rounded`] distances and depths of rounded bodies,
 //! - [`among`] scene queries, [`still`] bulk casts without rotation,
 //! - [`motion`] rotating bodies, [`path`] bodies moved by joints, [`play`] both with little play,
 //! - [`cubes`] puzzles of cubes, [`proofs`] saved and forged proofs.
@@ -23,6 +23,7 @@ pub mod nearest;
 pub mod path;
 pub mod play;
 pub mod proofs;
+pub mod rounded;
 pub mod scene;
 pub mod sequences;
 pub mod settings;

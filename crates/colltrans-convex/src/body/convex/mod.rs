@@ -10,6 +10,7 @@ mod build;
 mod excess;
 mod fan;
 mod ring;
+mod round;
 pub(crate) mod sections;
 mod support;
 #[cfg(test)]
@@ -31,7 +32,8 @@ use sections::SectionIndex;
 pub(crate) use support::MAX_RIMS;
 use support::SupportIndex;
 
-/// A convex polyhedron in its own frame: the convex hull of finitely many points.
+/// A convex polyhedron in its own frame: the convex hull of finitely many points, optionally
+/// [rounded](Self::rounded) by a radius.
 ///
 /// It may have a lower dimension: a flat polygon, a segment, a point. It is immutable, `Send` and `Sync`. The
 /// indices that queries need are built at construction, in `O(n)` space. Two structures are built lazily, once, and
@@ -52,6 +54,8 @@ pub struct ConvexPolyhedron {
     dent: f64,
     /// Upper bound of the distance of a corner from the plane of its polygon.
     flatness: f64,
+    /// Radius of the ball that sweeps the body; 0 unless it is rounded.
+    radius: f64,
     /// Faces with many corners, in ascending order. On a body with few vertices and few polygons, these are all
     /// faces with more than three corners.
     large_faces: Vec<LargeFace>,
@@ -208,9 +212,9 @@ impl ConvexPolyhedron {
         Self { input_excess: 0.0, ..self }
     }
 
-    /// Returns the volume, in the cube of the input's unit; 0 for a body of lower dimension.
+    /// Returns the volume, in the cube of the input's unit; 0 for a body of lower dimension that is not rounded.
     pub fn volume(&self) -> f64 {
-        self.inertia.volume
+        self.inertia.volume + self.volume_of_rounding()
     }
 
     /// Finds the support point, the vertex farthest along `direction` (body frame, any length), in `O(log n)`. If

@@ -157,7 +157,8 @@ pub(crate) fn cast_with_min_gap<O: Observer>(
     observer: &mut O,
 ) -> Result<Outcome, QueryError> {
     *next = TrackerUpdate::default();
-    if Noise::for_size(setting.size() + options.min_gap).is_below_noise(options.min_gap) {
+    let [_, gap] = setting.core_gap_bounds(options.min_gap);
+    if Noise::for_size(setting.size() + gap).is_below_noise(gap) {
         let touching = Options { min_gap: 0.0, ..*options };
         let outcome = crate::solve::search(setting, &touching, focus, last, next, observer)?;
         if let Some(outcome) = lower_by_slight_gap(setting, options.min_gap, outcome) {
@@ -177,8 +178,8 @@ fn find_gap_crossing<O: Observer>(
     next: &mut TrackerUpdate,
     observer: &mut O,
 ) -> Result<Outcome, QueryError> {
-    let size = setting.size();
-    let line = GapLine::new(setting.unit, options.min_gap, size);
+    let [_, gap] = setting.core_gap_bounds(options.min_gap);
+    let line = GapLine::new(setting.unit, gap, setting.size());
     let pairs = NearestPairs::default();
     let bodies = ConvexDifference { setting, noise: line.noise, pairs, observer, supports: 0 };
     let mut search = GapSearch { options, line, bodies, steps: Steps::default() };
@@ -292,11 +293,12 @@ impl<'s, 'a, 'o, O: Observer> GapSearch<'s, 'a, 'o, O> {
     /// Returns the separation that a plane along the line proves. `None` if its margin is not proven to be
     /// larger than the gap.
     fn proven_separation(&self, plane: &SetPlane<VertexPair>) -> Option<Separation> {
-        let certificate = Separation { normal: plane.normal, margin: plane.height };
+        let setting = self.bodies.setting;
+        let certificate = separation_of_bodies(setting, plane.normal, plane.height);
         let clear_height = self.line.min_gap + CLEAR_MARGIN * self.line.noise.point_error();
         let proven = plane.height > clear_height
             || plane.height > self.line.min_gap
-                && certificate.verify_with_gap(self.bodies.setting, self.line.min_gap).is_ok();
+                && certificate.verify_with_gap(setting, self.options.min_gap).is_ok();
         proven.then_some(certificate)
     }
 
@@ -421,12 +423,20 @@ fn not_converged(reason: Stalled) -> QueryError {
     QueryError::NotConverged { reason }
 }
 
-/// Lowers the outcome of bodies without a gap by a slight gap. `None` for separated bodies whose margin does
-/// not prove the gap: only a search with the gap decides.
+/// Returns the separation of the bodies, from the margin of their cores.
+fn separation_of_bodies(setting: &Setting, normal: DVec3, core_margin: f64) -> Separation {
+    let [_, radii] = setting.core_gap_bounds(0.0);
+    let margin = if radii == 0.0 { core_margin } else { (core_margin - radii).next_down() };
+    Separation { normal, margin }
+}
+
+/// Lowers the outcome of cores without a gap by a slight gap, the minimum gap `min_gap` plus both radii. `None` for
+/// separated cores whose margin does not prove the gap: only a search with the gap decides.
 fn lower_by_slight_gap(setting: &Setting, min_gap: f64, outcome: Outcome) -> Option<Outcome> {
+    let [_, gap] = setting.core_gap_bounds(min_gap);
     let nearer = |contact: Contact| {
         let certificate = contact.certificate;
-        let back = min_gap / contact.normal.dot(setting.direction);
+        let back = gap / contact.normal.dot(setting.direction);
         let lower = (certificate.lower - back).next_down();
         let certificate =
             Certificate { lower, rounding: certificate.rounding + back, ..certificate };
@@ -435,13 +445,15 @@ fn lower_by_slight_gap(setting: &Setting, min_gap: f64, outcome: Outcome) -> Opt
     match outcome {
         Outcome::Contact(contact) => Some(Outcome::Contact(nearer(contact))),
         Outcome::Grazing(of) => Some(Outcome::Grazing(Grazing {
-            overlap: of.overlap + min_gap,
+            overlap: of.overlap + gap,
             contact: nearer(of.contact),
             ..of
         })),
         Outcome::Separated(of) => {
-            let proven = of.certificate.verify_with_gap(setting, min_gap).is_ok();
-            proven.then_some(Outcome::Separated(of))
+            let Separation { normal, margin } = of.certificate;
+            let certificate = separation_of_bodies(setting, normal, margin);
+            let proven = certificate.verify_with_gap(setting, min_gap).is_ok();
+            proven.then_some(Outcome::Separated(Separated { certificate, ..of }))
         }
     }
 }

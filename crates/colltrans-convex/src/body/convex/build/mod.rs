@@ -207,6 +207,7 @@ impl ConvexPolyhedron {
             input_excess,
             dent: 0.0,
             flatness: 0.0,
+            radius: 0.0,
             large_faces: Vec::new(),
             topology,
             inertia,

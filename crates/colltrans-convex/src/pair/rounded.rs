@@ -1,0 +1,99 @@
+//! Answers about rounded bodies, from those about their cores.
+//!
+//! With `R`, the sum of the radii, and `d`, the distance of the cores:
+//!
+//! - Distance: `d - R` if `d > R`, otherwise 0.
+//! - Depth: `R - d` if the cores are apart (`0 <= d <= R`), `R` plus the depth of the cores if they overlap.
+//!   Both hold because the boundary of `M + B(R)` is at the distance `R` from the convex set `M`.
+
+use glam::DVec3;
+
+use super::convex::core_depth;
+use super::verify::core_distance;
+use crate::answer::{Depth, Distance, NearPoints, PlaneGap};
+use crate::setting::TwoBodies;
+use crate::setting::error::QueryError;
+use crate::solve::nearest::{Difference, NearestPairs, nearest_points};
+
+/// Lowers the upper bound of a distance of cores by both radii. Changes nothing if no body is rounded.
+#[inline]
+pub(super) fn near_points(bodies: &TwoBodies, near: NearPoints) -> NearPoints {
+    if !bodies.is_rounded() || near.distance == 0.0 {
+        return near;
+    }
+    let [radii, _] = bodies.core_gap_bounds(0.0);
+    let distance = near.distance - radii;
+    NearPoints { distance: if distance > 0.0 { distance.next_up() } else { 0.0 }, ..near }
+}
+
+/// Lowers the gap of a plane between cores by both radii. Changes nothing if no body is rounded.
+#[inline]
+pub(super) fn plane_gap(bodies: &TwoBodies, plane: PlaneGap) -> PlaneGap {
+    if !bodies.is_rounded() {
+        return plane;
+    }
+    let [_, radii] = bodies.core_gap_bounds(0.0);
+    PlaneGap { gap: (plane.gap - radii).next_down(), ..plane }
+}
+
+/// Returns the distance of rounded bodies, from that of their cores.
+pub(super) fn distance(bodies: &TwoBodies, cores: Distance) -> Distance {
+    let gap = cores.gap.map(|plane| plane_gap(bodies, plane)).filter(|plane| plane.gap > 0.0);
+    let near = near_points(bodies, cores.near);
+    let points = [cores.on_moving, cores.on_fixed];
+    let between = points[1] - points[0];
+    let normal = between.try_normalize().or(cores.normal).unwrap_or(DVec3::ZERO);
+    let [on_moving, on_fixed] = if near.distance == 0.0 {
+        [common_point(bodies, points[0], between.length(), normal); 2]
+    } else {
+        bodies.surface_points(points, normal)
+    };
+    Distance {
+        lower: gap.map_or(0.0, |plane| plane.gap),
+        upper: near.distance,
+        on_moving,
+        on_fixed,
+        normal: gap.map(|plane| plane.normal),
+        features: cores.features.filter(|_| gap.is_some()),
+        near,
+        gap,
+        steps: cores.steps,
+    }
+}
+
+/// Returns a point of both bodies, on the segment from the point `on_moving` of the moving core along `normal` to a
+/// point of the fixed core at `distance`.
+fn common_point(bodies: &TwoBodies, on_moving: DVec3, distance: f64, normal: DVec3) -> DVec3 {
+    let difference = bodies.moving.radius() - bodies.fixed.radius();
+    on_moving + normal * (0.5 * (distance + difference)).clamp(0.0, distance)
+}
+
+/// Computes the penetration depth of rounded bodies. See [`Pair::depth_until`](super::Pair::depth_until).
+///
+/// # Errors
+/// Returns the errors of the search for the depth of the cores.
+pub(super) fn depth(bodies: &TwoBodies, enough: f64) -> Result<Depth, QueryError> {
+    let [least, most] = bodies.core_gap_bounds(0.0);
+    let difference = Difference::new(bodies);
+    let found = nearest_points(&difference, &NearestPairs::default(), None);
+    let steps = found.steps();
+    if let Some(plane) = found.gap_plane(&difference).filter(|plane| plane.gap.gap > 0.0) {
+        // The cores are apart.
+        let direction = -plane.gap.normal;
+        let upper = (most - plane.gap.gap).next_up().max(0.0);
+        let near = found.near_points(&difference);
+        let lower = core_distance(bodies, &near).map_or(0.0, |apart| (least - apart).next_down());
+        let lower = if upper == 0.0 { 0.0 } else { lower.max(0.0) };
+        let near = (lower > 0.0).then(|| near_points(bodies, near));
+        return Ok(Depth { lower, upper, direction, enclosure: Default::default(), near, steps });
+    }
+    let cores = core_depth(bodies, enough - least)?;
+    let upper = (cores.upper + most).next_up();
+    if cores.lower > 0.0 {
+        return Ok(Depth { lower: (cores.lower + least).next_down(), upper, ..cores });
+    }
+    let near = found.near_points(&difference);
+    let lower = core_distance(bodies, &near).map_or(0.0, |apart| (least - apart).next_down());
+    let near = (lower > 0.0).then(|| near_points(bodies, near));
+    Ok(Depth { lower: lower.max(0.0), upper, near, ..cores })
+}

@@ -1,0 +1,296 @@
+//! Rounded bodies: closed forms, every family against exact arithmetic, degenerate cores, proofs and changed ones.
+
+use std::f64::consts::PI;
+
+use colltrans_convex::{
+    BuildError, Cast, Clearance, Contact, ConvexPolyhedron, Depth, Distance, FreeReason, Outcome,
+    Pair, Pose, Tracker, Within,
+};
+use colltrans_testkit::bodies::{at_xyz as at, block as cuboid};
+use colltrans_testkit::cases;
+use colltrans_testkit::oracle::min_gap::GapJudge;
+use colltrans_testkit::oracle::rounded::RoundedJudge;
+use colltrans_testkit::oracle::settings::{FAMILIES, setting};
+use colltrans_testkit::random::Random;
+use glam::{DQuat, DVec3};
+
+fn sphere(radius: f64) -> ConvexPolyhedron {
+    ConvexPolyhedron::sphere(DVec3::ZERO, radius).expect("a sphere")
+}
+
+fn capsule(half: DVec3, radius: f64) -> ConvexPolyhedron {
+    ConvexPolyhedron::capsule([-half, half], radius).expect("a capsule")
+}
+
+/// The judged outcome of a cast.
+fn judged_outcome(cast: &Cast) -> Outcome {
+    let judge = GapJudge::new(*cast);
+    let outcome = cast.first_contact().expect("an answer");
+    judge.check(&outcome).expect("a right outcome");
+    judge.check_clearance(&cast.clearance().expect("an answer")).expect("a right clearance");
+    outcome
+}
+
+/// The judged first contact.
+fn judged_contact(cast: &Cast) -> Contact {
+    let Outcome::Contact(contact) = judged_outcome(cast) else { panic!("a contact") };
+    contact
+}
+
+fn judged_pair(pair: &Pair) -> (Distance, Depth) {
+    let judge = RoundedJudge::new(*pair);
+    let (distance, depth) = (pair.distance().expect("an answer"), pair.depth().expect("an answer"));
+    let width = judge.check(&distance).expect("a right distance");
+    assert!(width <= 8.0, "{width} noises");
+    let width = judge.check_depth(&depth, true).expect("a right depth");
+    assert!(width <= 70.0, "{width} noises");
+    for length in [0.0, 1e-3, 0.5 * distance.upper, distance.upper, 2.0 * distance.upper + 1.0] {
+        judge.check_within(length, &pair.within(length).expect("an answer")).expect("right");
+    }
+    (distance, depth)
+}
+
+#[test]
+fn spheres_meet_where_the_closed_form_says() {
+    let mut random = Random::new(7);
+    let mut contacts = 0;
+    for _ in 0..cases(2000) {
+        let scale = 10.0_f64.powf(random.range(-6.0, 6.0));
+        let [r, s] = [0, 0].map(|_| 10.0_f64.powf(random.range(-2.0, 1.0)) * scale);
+        let from = random.direction() * random.range(0.0, 20.0) * scale;
+        let direction = random.direction();
+        let (p, q) = (sphere(r), sphere(s));
+        let start = Pose::from_translation(from).expect("a pose");
+        let cast = Cast::new(p.at(start), q.at(Pose::IDENTITY), direction).expect("a query");
+        let lateral = from.reject_from_normalized(direction).length();
+        let sum = r + s;
+        match judged_outcome(&cast) {
+            Outcome::Contact(contact) => {
+                let half = ((sum - lateral) * (sum + lateral)).sqrt();
+                let first = -from.dot(direction) - half;
+                // The bounds are those of a rounded square root near a graze.
+                let off = 1e-13 * (from.length() + sum) * (1.0 + sum / half);
+                assert!((contact.translation - first).abs() <= off, "{first} {contact:?}");
+                let points = contact.witness_points(&cast);
+                let met = points.on_moving + direction * contact.translation;
+                assert!((met - points.on_fixed).length() <= off, "{met} {}", points.on_fixed);
+                assert!((points.on_fixed.length() - s).abs() <= off);
+                contacts += 1;
+            }
+            Outcome::Separated(separated) => {
+                let margin = separated.certificate.margin;
+                assert!((margin - (lateral - sum)).abs() <= 1e-13 * (from.length() + sum));
+            }
+            Outcome::Grazing(_) => assert!((lateral - sum).abs() <= 1e-12 * (from.length() + sum)),
+        }
+        let pair = Pair::new(p.at(start), q.at(Pose::IDENTITY)).expect("a pair");
+        let (distance, depth) = judged_pair(&pair);
+        let gap = from.length() - sum;
+        let off = 1e-13 * (from.length() + sum);
+        assert!((distance.upper - gap.max(0.0)).abs() <= off, "{gap} {distance:?}");
+        assert!((depth.upper - (-gap).max(0.0)).abs() <= off, "{gap} {depth:?}");
+    }
+    assert!(contacts > cases(100), "{contacts}");
+}
+
+#[test]
+fn a_capsule_meets_edges_faces_and_corners_of_a_box() {
+    let table = cuboid(DVec3::splat(-1.0), DVec3::splat(1.0));
+    let down = |body: &ConvexPolyhedron, pose: Pose| {
+        let cast = Cast::new(body.at(pose), table.at(Pose::IDENTITY), DVec3::NEG_Z);
+        judged_contact(&cast.expect("a query")).translation
+    };
+    let along_x = capsule(DVec3::X * 3.0, 0.5);
+    // Over the face, over an edge at half of the radius, and across a corner.
+    assert!((down(&along_x, at(0.0, 0.0, 5.0)) - 3.5).abs() < 1e-13);
+    let beside = 5.0 - 1.0 - (0.25_f64 - 0.0625).sqrt();
+    assert!((down(&along_x, at(0.0, 1.25, 5.0)) - beside).abs() < 1e-13);
+    let ball = sphere(0.5);
+    let corner = 5.0 - 1.0 - (0.25_f64 - 2.0 * 0.04).sqrt();
+    assert!((down(&ball, at(1.2, 1.2, 5.0)) - corner).abs() < 1e-13);
+    // A box with rounded edges onto a ball: the sum of the radii counts.
+    let rounded = table.clone().rounded(0.125).expect("a rounded box");
+    let cast = Cast::new(ball.at(at(1.2, 1.2, 5.0)), rounded.at(Pose::IDENTITY), DVec3::NEG_Z);
+    let contact = judged_contact(&cast.expect("a query"));
+    assert!((contact.translation - (4.0 - (0.625_f64.powi(2) - 0.08).sqrt())).abs() < 1e-13);
+    // Into the corner of two walls and a floor, along the diagonal of the room.
+    let floor = cuboid(DVec3::new(-9.0, -9.0, -2.0), DVec3::new(9.0, 9.0, -1.0));
+    let cast =
+        Cast::new(ball.at(at(0.0, 0.0, 1.0)), floor.at(Pose::IDENTITY), DVec3::new(1.0, 1.0, -1.0));
+    assert!((judged_contact(&cast.expect("a query")).translation - 1.5).abs() < 1e-13);
+}
+
+#[test]
+fn a_large_ball_lands_on_a_small_cuboid_and_a_small_one_on_a_large_floor() {
+    // Floors of many sizes below a ball: libraries that step or iterate in single precision stop short of them.
+    for size in [1.0, 1e2, 1e4, 1e6, 1e8] {
+        let floor = cuboid(DVec3::new(-size, -size, -1.0), DVec3::new(size, size, 0.0));
+        for radius in [0.05, 0.5, 55.0, 136.0] {
+            let start = at(0.123 * size, -0.377 * size, 1000.0);
+            let ball = sphere(radius);
+            let cast = Cast::new(ball.at(start), floor.at(Pose::IDENTITY), DVec3::NEG_Z);
+            let contact = judged_contact(&cast.expect("a query"));
+            let off = (contact.translation - (1000.0 - radius)).abs();
+            assert!(off <= 1e-14 * (size + 1000.0), "{size} {radius}: {off:e}");
+        }
+    }
+}
+
+#[test]
+fn rounded_bodies_of_all_families_are_right() {
+    let (mut contacts, mut deep) = (0, 0);
+    for (family, _) in FAMILIES {
+        for seed in 0..cases(12) {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            let mut random = Random::new(seed ^ 0x0b0d);
+            let Ok(plain) = setting.query(&bodies) else { continue };
+            let size = bodies.moving.vertices().iter().map(|v| v.length()).fold(1e-3, f64::max);
+            let mut radius = || match random.index(4) {
+                0 => 0.0,
+                _ => size * 10.0_f64.powf(random.range(-12.0, 1.0)),
+            };
+            let round = |body: &ConvexPolyhedron, radius: f64| body.clone().rounded(radius);
+            let (Ok(moving), Ok(fixed)) =
+                (round(&bodies.moving, radius()), round(&bodies.fixed, radius()))
+            else {
+                continue;
+            };
+            let [p, q] = [moving.at(plain.moving_pose()), fixed.at(plain.fixed_pose())];
+            let cast = Cast::new(p, q, plain.direction()).expect("a query");
+            contacts += u32::from(matches!(judged_outcome(&cast), Outcome::Contact(_)));
+            let kept = cast.with_min_gap(0.3 * size).expect("a gap");
+            judged_outcome(&kept);
+            let pair = Pair::new(p, q).expect("a pair");
+            let judge = RoundedJudge::new(pair);
+            judge.check(&pair.distance().expect("an answer")).expect("a right distance");
+            let depth = pair.depth().expect("an answer");
+            let few = moving.vertices().len() * fixed.vertices().len() <= 64;
+            judge.check_depth(&depth, few).expect("a right depth");
+            deep += u32::from(depth.lower > 0.0);
+        }
+    }
+    assert!(contacts > cases(200) && deep > cases(50), "{contacts} {deep}");
+}
+
+#[test]
+fn concentric_and_touching_bodies_have_depths() {
+    let world = Pose::IDENTITY;
+    let (ball, point) = (sphere(2.0), sphere(0.0));
+    let depth = |p: &ConvexPolyhedron, q: &ConvexPolyhedron, x: f64| {
+        judged_pair(&Pair::new(p.at(at(x, 0.0, 0.0)), q.at(world)).expect("a pair")).1
+    };
+    // Concentric spheres, a point inside a sphere, a segment through a sphere.
+    assert!((depth(&ball, &sphere(1.0), 0.0).upper - 3.0).abs() < 1e-14);
+    assert!((depth(&ball, &point, 0.5).upper - 1.5).abs() < 1e-14);
+    assert!((depth(&ball, &capsule(DVec3::X * 9.0, 0.25), 0.5).upper - 2.25).abs() < 1e-13);
+    // A ball whose centre is inside a cube: the way out and the radius.
+    let cube = cuboid(DVec3::NEG_ONE, DVec3::ONE);
+    let found = depth(&ball, &cube, 0.75);
+    assert!((found.upper - 2.25).abs() < 1e-13 && found.upper - found.lower < 1e-13, "{found:?}");
+    // The centre on a face.
+    assert!((depth(&ball, &cube, 1.0).upper - 2.0).abs() < 1e-13);
+    assert_eq!(depth(&ball, &cube, 3.5).upper, 0.0);
+}
+
+#[test]
+fn clearance_range_and_intersection_refer_to_the_round_surfaces() {
+    let (ball, cube) = (sphere(0.5), cuboid(DVec3::NEG_ONE, DVec3::ONE));
+    let cast = |x: f64, z: f64, direction: DVec3| {
+        let pose = at(x, 0.0, z);
+        Cast::new(ball.at(pose), cube.at(Pose::IDENTITY), direction).expect("a query")
+    };
+    let range = cast(0.0, 5.0, DVec3::NEG_Z).contact_range().expect("an answer");
+    let [first, last] = range.interval().expect("it goes through");
+    assert!((first - 3.5).abs() < 1e-13 && (last - 6.5).abs() < 1e-13);
+    assert!(cast(0.0, 1.49, DVec3::X).intersects().expect("an answer").meets);
+    assert!(!cast(0.0, 1.51, DVec3::X).intersects().expect("an answer").meets);
+    let slides = cast(0.0, 1.5, DVec3::X).clearance().expect("an answer");
+    assert!(matches!(slides, Clearance::Free(FreeReason::Slides(_))), "{slides:?}");
+    let above = cast(0.0, 1.5, DVec3::Z).clearance().expect("an answer");
+    assert!(matches!(above, Clearance::Free(FreeReason::Behind(_))), "{above:?}");
+    let depth = cast(0.0, 1.25, DVec3::NEG_Z).directional_depth().expect("an answer");
+    assert!((depth.depth - 0.25).abs() < 1e-13);
+    let pair = Pair::new(ball.at(at(0.0, 0.0, 2.0)), cube.at(Pose::IDENTITY)).expect("a pair");
+    assert!(matches!(pair.within(0.5001).expect("an answer"), Within::Closer(_)));
+    assert!(matches!(pair.within(0.4999).expect("an answer"), Within::Farther(_)));
+}
+
+#[test]
+fn trackers_follow_rounded_bodies() {
+    let capsule = capsule(DVec3::X, 0.25);
+    let cube = cuboid(DVec3::NEG_ONE, DVec3::ONE).rounded(0.125).expect("a rounded cube");
+    let mut tracker = Tracker::new();
+    for step in 0..cases(200) {
+        let turn = DQuat::from_rotation_z(0.01 * f64::from(step as u32));
+        let from = DVec3::new(0.004 * f64::from(step as u32), 0.3, 4.0);
+        let pose = Pose::new(turn, from).expect("a pose");
+        let cast = Cast::new(capsule.at(pose), cube.at(Pose::IDENTITY), DVec3::NEG_Z);
+        let cast = cast.expect("a query");
+        let outcome = tracker.first_contact(&cast).expect("an answer");
+        GapJudge::new(cast).check(&outcome).expect("right");
+        let pair = Pair::new(capsule.at(pose), cube.at(Pose::IDENTITY)).expect("a pair");
+        let distance = tracker.distance(&pair).expect("an answer");
+        RoundedJudge::new(pair).check(&distance).expect("right");
+    }
+}
+
+#[test]
+fn forged_proofs_of_rounded_bodies_are_refused() {
+    let (ball, cube) = (sphere(0.5), cuboid(DVec3::NEG_ONE, DVec3::ONE));
+    let start = at(1.25, 0.0, 5.0);
+    let cast = Cast::new(ball.at(start), cube.at(Pose::IDENTITY), DVec3::NEG_Z).expect("a query");
+    let proof = judged_contact(&cast).certificate;
+    let mut forged = proof;
+    forged.lower += 1e-9;
+    assert!(cast.verify(&forged).is_err());
+    let mut forged = proof;
+    forged.upper = proof.lower - 1e-9;
+    forged.lower = forged.upper;
+    assert!(cast.verify(&forged).is_err());
+    // The same proof does not hold for a larger or a smaller ball.
+    for radius in [0.5 - 1e-9, 0.5 + 1e-9] {
+        let other = sphere(radius);
+        let cast = Cast::new(other.at(start), cube.at(Pose::IDENTITY), DVec3::NEG_Z);
+        assert!(cast.expect("a query").verify(&proof).is_err(), "{radius}");
+    }
+    let aside = Cast::new(ball.at(at(2.0, 0.0, 5.0)), cube.at(Pose::IDENTITY), DVec3::NEG_Z);
+    let aside = aside.expect("a query");
+    let Outcome::Separated(separated) = judged_outcome(&aside) else { panic!("it passes") };
+    let mut forged = separated.certificate;
+    assert!((forged.margin - 0.5).abs() < 1e-13);
+    forged.margin += 1e-9;
+    assert!(aside.verify(&forged).is_err());
+    let pair = Pair::new(ball.at(at(0.0, 0.0, 1.25)), cube.at(Pose::IDENTITY)).expect("a pair");
+    let depth = judged_pair(&pair).1;
+    for (lower, upper) in [(1e-9, 0.0), (0.0, -1e-9)] {
+        let mut forged = depth.clone();
+        forged.lower += lower;
+        forged.upper += upper;
+        assert!(pair.verify(&forged).is_err());
+    }
+    let mut forged = depth;
+    forged.near = None;
+    assert!(pair.verify(&forged).is_err());
+}
+
+#[test]
+fn volumes_follow_the_formula_of_steiner() {
+    let ball = 4.0 / 3.0 * PI;
+    assert!((sphere(1.0).volume() - ball).abs() < 1e-14);
+    assert!((capsule(DVec3::X, 1.0).volume() - (ball + 2.0 * PI)).abs() < 1e-14);
+    let plate = cuboid(DVec3::ZERO, DVec3::new(2.0, 3.0, 0.0)).rounded(1.0).expect("a plate");
+    assert!((plate.volume() - (12.0 + 5.0 * PI + ball)).abs() < 1e-13);
+    let cube = cuboid(DVec3::ZERO, DVec3::ONE).rounded(1.0).expect("a rounded cube");
+    assert!((cube.volume() - (1.0 + 6.0 + 3.0 * PI + ball)).abs() < 1e-13);
+}
+
+#[test]
+fn invalid_radii_are_refused() {
+    for radius in [-1.0, f64::NAN, f64::INFINITY, 1e300, 1e-300] {
+        let refused = ConvexPolyhedron::sphere(DVec3::ZERO, radius);
+        assert!(matches!(refused, Err(BuildError::Radius { .. })), "{radius}");
+    }
+    let twice = sphere(1.0).rounded(0.5).expect("rounded again");
+    assert_eq!(twice.radius(), 1.5);
+}

@@ -109,7 +109,7 @@ pub struct Plan {
     /// Interlocked groups, with the reasons.
     pub interlocked: Vec<Interlocked>,
     /// For each part, the index of the first part with the same shape, see
-    /// [`first_identical_parts`](crate::identical::first_identical_parts).
+    /// [`first_identical_parts`].
     pub first_identical: Vec<usize>,
     /// For a plan that removes selected parts: which other parts are removed with them. `None` for a plan of all
     /// parts.

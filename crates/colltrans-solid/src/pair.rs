@@ -510,7 +510,7 @@ mod tests {
             pair.verify(&proof).expect("it holds");
             match answer {
                 Within::Farther(gap) => {
-                    assert!(gap.gap > length && gap.gap == proof.lower, "{gap:?}")
+                    assert!(gap.gap > length && gap.gap == proof.lower, "{gap:?}");
                 }
                 Within::Undecided(of) => {
                     assert!(of.lower <= length && of.lower == proof.lower, "{of:?}");

@@ -54,7 +54,7 @@ impl<'a> MotionCast<'a, Solid> {
     /// Builds the cast of two bodies as solids. Each of them is a solid or a convex polyhedron.
     ///
     /// A point or a segment is accepted. Its contact with a closed solid has an upper bound: a time at which one of its
-    /// points is inside ([`FacetContactProof::Contained`]), or at which a segment passes through a facet. The contact of a
+    /// points is inside (`FacetContactProof::Contained`), or at which a segment passes through a facet. The contact of a
     /// point that passes through an open shell has no upper bound, and is [`MotionOutcome::Grazing`].
     ///
     /// # Errors

@@ -254,7 +254,7 @@ fn farther_with_proof_exceeds_the_length() {
                     assert_eq!(proof.expect("a proof").lower, gap.gap);
                 }
                 Within::Undecided(of) => {
-                    assert!(of.lower <= length && length <= of.upper, "{of:?} {length:e}")
+                    assert!(of.lower <= length && length <= of.upper, "{of:?} {length:e}");
                 }
                 Within::Closer(near) => assert!(near.distance() <= length),
             }

@@ -308,7 +308,7 @@ fn check_depth(depth: f64) -> Result<(), QueryError> {
 /// Checks that the bodies are larger than the error `off` of computed places. Two points always pass, because no body
 /// is smaller.
 fn check_accuracy<B: VertexHull>(bodies: [&B; 2], off: f64) -> Result<(), QueryError> {
-    let size = bodies[0].reach() + bodies[1].reach();
+    let size = bodies.iter().map(|body| body.reach() + body.radius()).sum();
     if size > 0.0 && off > size { Err(QueryError::PositionError { off, size }) } else { Ok(()) }
 }
 
@@ -339,7 +339,8 @@ fn step_limit_error(undecided: &MotionContact<impl Sized>) -> QueryError {
 fn default_tolerance<B: VertexHull>(bodies: [&B; 2], motions: [&Motion; 2]) -> f64 {
     let off = split_into_spans(bodies, motions, 0.0).into_iter().map(|span| {
         let ends = [span.from, span.to].map(|time| span.instant_at(time).bodies.size());
-        Noise::for_size(ends[0].max(ends[1])).point_error() + span.error
+        let radii = bodies[0].radius() + bodies[1].radius();
+        Noise::for_size(ends[0].max(ends[1]) + radii).point_error() + span.error
     });
     DEFAULT_TOLERANCE_FACTOR * off.fold(0.0, f64::max)
 }

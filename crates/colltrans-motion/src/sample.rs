@@ -90,7 +90,8 @@ impl Sampler<ConvexPolyhedron> for ConvexSampler {
         let at = motion.instant_at(time);
         let [min_gap, error] = [motion.min_gap(), motion.position_error()];
         let difference = Difference::new(&at.bodies);
-        let beyond = min_gap.max(0.0) + FAR_SHARE * difference.bodies.size();
+        let [_, between_cores] = at.bodies.core_gap_bounds(min_gap.max(0.0));
+        let beyond = between_cores + FAR_SHARE * difference.bodies.size();
         let found = nearest_points_within_share(&difference, &self.pairs, ROUGH_ACCURACY, beyond);
         self.steps.looks += 1;
         self.steps.supports += found.supports;
@@ -101,7 +102,8 @@ impl Sampler<ConvexPolyhedron> for ConvexSampler {
         let plane = found.gap_plane(&difference).map(|plane| plane.gap);
         let (plane, points) = match plane {
             Some(plane) if plane.gap > 0.0 || min_gap >= 0.0 => {
-                (Some(plane), found.weighted_pairs_and_weights())
+                let gap = at.bodies.less_radii(plane.gap);
+                (Some(PlaneGap { gap, ..plane }), found.weighted_pairs_and_weights())
             }
             _ if min_gap < 0.0 => self.least_overlap_plane(&difference),
             _ => (None, found.weighted_pairs_and_weights()),

@@ -39,8 +39,19 @@ pub(super) fn bounds_of_placed(placed: &AnyPlaced<'_>) -> Aabb {
     }
 }
 
-/// Returns a box that contains a convex body and its input points.
+/// Returns a box that contains a convex body and its input points, rounded by the radius of the body.
 fn bounds_of_convex(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
+    let bounds = bounds_of_core(body, pose);
+    let radius = body.radius();
+    if radius == 0.0 {
+        return bounds;
+    }
+    let size = bounds.low.abs().max(bounds.high.abs()).max_element() + radius;
+    bounds.expanded(radius + 16.0 * f64::EPSILON * size)
+}
+
+/// Returns a box that contains the core of a convex body and its input points.
+fn bounds_of_core(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
     let excess = body.input_excess();
     if body.vertices().len() <= MAX_SCANNED_VERTICES {
         return bounds_of_points(body.vertices(), pose, excess);

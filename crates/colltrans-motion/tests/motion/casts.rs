@@ -559,3 +559,74 @@ fn two_points_passing_through_each_other_graze() {
         cast.verify(outcome.proof()).expect("it holds");
     }
 }
+
+#[test]
+fn ball_on_arm_meets_floor_at_time_of_closed_form() {
+    let floor = cuboid(DVec3::new(20.0, 20.0, 1.0));
+    for radius in [0.01, 0.25, 0.75] {
+        // The centre of the ball falls on a circle of radius 2 about the y axis, from a height of 2 to one of 0.
+        let ball = ConvexPolyhedron::sphere(DVec3::ZERO, radius).expect("a sphere");
+        let start = at(0.0, 0.0, 2.0);
+        let turn = Motion::rotation_about(start, DVec3::ZERO, DVec3::Y, FRAC_PI_2).expect("a turn");
+        let top = floor.vertices().iter().map(|v| v.z).fold(f64::NEG_INFINITY, f64::max);
+        let place = at(0.0, 0.0, -top);
+        let cast = MotionCast::new(ball.with_motion(&turn), floor.at(place)).expect("a cast");
+        let MotionOutcome::Contact(contact) = cast.first_contact().expect("an answer") else {
+            panic!("the ball reaches the floor")
+        };
+        let time = (radius / 2.0).acos() / FRAC_PI_2;
+        assert!(contact.lower <= time && time <= contact.upper, "{radius}: {time} {contact:?}");
+        assert!(contact.upper - contact.lower < 1e-11, "{radius}: {contact:?}");
+        let [lower, upper] = cast.verify(&contact.proof).expect("a proof");
+        assert!(lower >= contact.lower && upper <= contact.upper);
+    }
+}
+
+#[test]
+fn rounded_bodies_move_as_their_cores_with_a_gap() {
+    let mut random = Random::new(0x0b0e);
+    let mut contacts = 0;
+    for _ in 0..cases(200) {
+        let cores = [hull(6, &mut random), hull(12, &mut random)];
+        let radii = [0.0, 0.0].map(|_| random.range(0.0, 0.4) * f64::from(random.index(3) as u32));
+        let round = |k: usize| cores[k].clone().rounded(radii[k]).expect("a radius");
+        let bodies = [round(0), round(1)];
+        let motions = [random_motion(&mut random, PI), Motion::at_rest(Pose::IDENTITY)];
+        let [p, q] = [0, 1].map(|k| bodies[k].with_motion(&motions[k]));
+        let cast = MotionCast::new(p, q).expect("a cast");
+        let outcome = cast.first_contact().expect("an answer");
+        cast.verify(proof_of(&outcome)).expect("a proof");
+        let [p, q] = [0, 1].map(|k| cores[k].with_motion(&motions[k]));
+        let gap = radii[0] + radii[1];
+        let kept = MotionCast::new(p, q).and_then(|cast| cast.with_min_gap(gap)).expect("a cast");
+        let expected = kept.first_contact().expect("an answer");
+        match (&outcome, &expected) {
+            (MotionOutcome::Free(_), MotionOutcome::Free(_))
+            | (MotionOutcome::Overlapping(_), MotionOutcome::Overlapping(_)) => {}
+            (
+                MotionOutcome::Contact(a) | MotionOutcome::Grazing(a),
+                MotionOutcome::Contact(b) | MotionOutcome::Grazing(b),
+            ) => {
+                assert!(a.lower <= b.upper && b.lower <= a.upper, "{a:?} {b:?}");
+                contacts += 1;
+            }
+            other => panic!("{other:?}"),
+        }
+        // Nothing meets before the lower bound.
+        let until = match &outcome {
+            MotionOutcome::Contact(of) | MotionOutcome::Grazing(of) => of.lower,
+            MotionOutcome::Overlapping(_) => 0.0,
+            _ => 1.0,
+        };
+        for k in 0..8 {
+            let [a, b] = [0, 1].map(|which: usize| {
+                motions[which].pose_at(until * f64::from(k) / 8.0).expect("a pose")
+            });
+            let pair = Pair::new(bodies[0].at(a), bodies[1].at(b)).expect("a pair");
+            let apart = pair.distance().expect("an answer");
+            assert!(until == 0.0 || apart.upper > 0.0, "they meet before {until}");
+        }
+        cast.clearance().expect("an answer");
+    }
+    assert!(contacts > cases(20), "{contacts}");
+}

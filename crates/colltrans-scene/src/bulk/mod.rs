@@ -155,7 +155,9 @@ impl<'a> FixedRotations<'a> {
             && std::ptr::eq(requested.fixed, stored.fixed)
             && requested.moving_matrix == stored.moving_matrix
             && requested.fixed_matrix == stored.fixed_matrix;
-        let plain = cast.options.min_gap == 0.0 && cast.options.solver != Solver::Cta;
+        let plain = cast.options.min_gap == 0.0
+            && !cast.setting.is_rounded()
+            && cast.options.solver != Solver::Cta;
         self.faces.as_ref().filter(|_| same && plain)
     }
 }

@@ -245,3 +245,44 @@ fn minimum_gap_is_kept_from_all_obstacles() {
     let kept = kept.clearance(DVec3::X).expect("an answer").safe_translation().expect("apart");
     assert!((kept - (2.0 - 0.21_f64.sqrt())).abs() < 1e-12, "{kept}");
 }
+
+#[test]
+fn nearest_of_many_spheres_is_that_of_the_closed_form() {
+    let mut random = Random::new(0x5ca);
+    for _ in 0..cases(20) {
+        let mut scene = Obstacles::new();
+        let spheres: Vec<(DVec3, f64)> =
+            (0..200).map(|_| (random.vector() * 10.0, random.range(0.01, 0.5))).collect();
+        for (at, radius) in &spheres {
+            let sphere = ConvexPolyhedron::sphere(DVec3::ZERO, *radius).expect("a sphere");
+            scene.insert(sphere, Pose::from_translation(*at).expect("a pose"));
+        }
+        let ends = [random.vector(), random.vector()];
+        let capsule = ConvexPolyhedron::capsule(ends, 0.25).expect("a capsule");
+        let query = SceneQuery::new(capsule.at(Pose::IDENTITY), &scene).expect("a query");
+        let gap = |(at, radius): &(DVec3, f64)| {
+            let along = ends[1] - ends[0];
+            let share = ((*at - ends[0]).dot(along) / along.dot(along)).clamp(0.0, 1.0);
+            (*at - ends[0] - along * share).length() - radius - 0.25
+        };
+        let least = spheres.iter().map(gap).fold(f64::INFINITY, f64::min).max(0.0);
+        let nearest = query.nearest().expect("an answer").expect("there are some");
+        let ByKind::Convex(distance) = nearest.distance else { panic!("convex bodies") };
+        let distance = distance.upper;
+        assert!((distance - least).abs() < 1e-12, "{distance} {least}");
+        let near = spheres.iter().filter(|sphere| gap(sphere) < 2.0).count();
+        assert_eq!(query.within(2.0).expect("an answer").closer.len(), near);
+        let (clearance, proof) = query.certified_clearance(DVec3::X).expect("an answer");
+        assert!(query.verify(&proof).expect("a proof") < 1e-9, "{clearance:?}");
+    }
+}
+
+#[test]
+fn rounded_bodies_are_refused_among_solids() {
+    let mut scene = Obstacles::new();
+    let cube = cuboid(DVec3::ZERO, DVec3::ONE);
+    scene.insert(Solid::from_convex(&cube).expect("a solid"), Pose::IDENTITY);
+    let ball = ConvexPolyhedron::sphere(DVec3::ZERO, 1.0).expect("a sphere");
+    let refused = SceneQuery::new(ball.at(at(3.0, 0.0, 0.0)), &scene);
+    assert!(refused.is_err_and(|error| error.to_string().contains("rounded by a radius of 1")));
+}

@@ -20,9 +20,10 @@ impl Solid {
     /// A flat polygon becomes a surface with two sides and no volume. It overlaps bodies that contain it.
     ///
     /// # Errors
-    /// Returns [`SolidError::NoArea`] for a point or a segment.
+    /// Returns [`SolidError::NoArea`] for a point or a segment, and [`SolidError::Rounded`] for a rounded body.
     pub fn from_convex(body: &ConvexPolyhedron) -> Result<Self, SolidError> {
         check_area(body)?;
+        check_is_polyhedron(body)?;
         let facets: Vec<Vec<u32>> =
             (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
         Ok(Self::from_mesh(body.vertices(), &facets)?.with_input_numbers(body.input_indices()))
@@ -36,6 +37,7 @@ impl AsSolid for ConvexPolyhedron {
     }
 
     fn as_surface(&self) -> Result<&Solid, SolidError> {
+        check_is_polyhedron(self)?;
         let make = || match self.dimension() {
             0 => Ok(Solid::from_degenerate_facet(self, [0, 0, 0])),
             1 => Ok(Solid::from_degenerate_facet(self, [0, 1, 1])),
@@ -53,4 +55,10 @@ fn check_area(body: &ConvexPolyhedron) -> Result<(), SolidError> {
         1 => Err(SolidError::NoArea { what: "segment" }),
         _ => Ok(()),
     }
+}
+
+/// Returns an error for a rounded body, which is no solid.
+fn check_is_polyhedron(body: &ConvexPolyhedron) -> Result<(), SolidError> {
+    let radius = body.radius();
+    if radius == 0.0 { Ok(()) } else { Err(SolidError::Rounded { radius }) }
 }

@@ -23,6 +23,15 @@ pub enum SolidError {
         /// `point` or `segment`.
         what: &'static str,
     },
+    /// The body is rounded, and the query is about solids, which are polyhedra.
+    #[error(
+        "a body that is rounded by a radius of {radius:?} is no solid; casts, distances, depths, motions and scenes \
+         of convex bodies accept it"
+    )]
+    Rounded {
+        /// Radius of the body.
+        radius: f64,
+    },
     /// The mesh has more vertices, facets or corners than 32-bit indices support.
     #[error(
         "the mesh has {count} facets, triangles, vertices or corners; accepted: at most {limit}"

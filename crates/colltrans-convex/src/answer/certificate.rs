@@ -515,9 +515,8 @@ impl Separation {
         min_gap: f64,
     ) -> Result<f64, CertificateError> {
         check_lateral_normal(setting, self.normal)?;
-        let [_, radii] = setting.core_gap_bounds(0.0);
-        let (shadows, claimed) = (shadow_gap(setting, self.normal), self.margin);
-        let proven = if radii == 0.0 { shadows } else { (shadows - radii).next_down() };
+        let proven = setting.less_radii(shadow_gap(setting, self.normal));
+        let claimed = self.margin;
         if claimed > min_gap && claimed <= proven {
             Ok(proven)
         } else {

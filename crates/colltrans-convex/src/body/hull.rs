@@ -17,6 +17,12 @@ pub trait VertexHull {
     fn input_excess(&self) -> f64 {
         0.0
     }
+
+    /// Returns the radius of the ball that sweeps the hull; 0 for a body that is not rounded.
+    #[inline]
+    fn radius(&self) -> f64 {
+        0.0
+    }
 }
 
 impl VertexHull for ConvexPolyhedron {
@@ -33,5 +39,10 @@ impl VertexHull for ConvexPolyhedron {
     #[inline]
     fn input_excess(&self) -> f64 {
         Self::input_excess(self)
+    }
+
+    #[inline]
+    fn radius(&self) -> f64 {
+        Self::radius(self)
     }
 }

@@ -207,6 +207,9 @@ pub struct BodyRecord {
     /// Omitted if it is 0, and in files of versions whose bounds did not include it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     input_excess: Option<f64>,
+    /// Radius of a rounded body; omitted if it is 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    radius: Option<f64>,
 }
 
 impl BodyRecord {
@@ -219,6 +222,7 @@ impl BodyRecord {
             input_indices: body.input_indices().to_vec(),
             hull_error: body.hull_error(),
             input_excess: Some(body.input_excess()).filter(|excess| *excess > 0.0),
+            radius: Some(body.radius()).filter(|radius| *radius != 0.0),
         }
     }
 
@@ -229,11 +233,12 @@ impl BodyRecord {
     #[inline]
     pub fn to_body(&self) -> Result<ConvexPolyhedron, BuildError> {
         let vertices: Vec<DVec3> = self.vertices.iter().copied().map(DVec3::from_array).collect();
-        ConvexPolyhedron::from_own_faces(
+        let core = ConvexPolyhedron::from_own_faces(
             &vertices,
             &self.faces,
             &self.input_indices,
             [self.hull_error, self.input_excess.unwrap_or(0.0)],
-        )
+        )?;
+        core.rounded(self.radius.unwrap_or(0.0))
     }
 }

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::convex::core_depth;
 use super::verify::core_distance;
-use crate::answer::{Depth, Distance, NearPoints, PlaneGap};
+use crate::answer::{Depth, Distance, Enclosure, NearPoints, PlaneGap};
 use crate::setting::TwoBodies;
 use crate::setting::error::QueryError;
 use crate::solve::nearest::{Difference, NearestPairs, nearest_points};
@@ -29,11 +29,7 @@ pub(super) fn near_points(bodies: &TwoBodies, near: NearPoints) -> NearPoints {
 /// Lowers the gap of a plane between cores by both radii. Changes nothing if no body is rounded.
 #[inline]
 pub(super) fn plane_gap(bodies: &TwoBodies, plane: PlaneGap) -> PlaneGap {
-    if !bodies.is_rounded() {
-        return plane;
-    }
-    let [_, radii] = bodies.core_gap_bounds(0.0);
-    PlaneGap { gap: (plane.gap - radii).next_down(), ..plane }
+    PlaneGap { gap: bodies.less_radii(plane.gap), ..plane }
 }
 
 /// Returns the distance of rounded bodies, from that of their cores.
@@ -85,7 +81,7 @@ pub(super) fn depth(bodies: &TwoBodies, enough: f64) -> Result<Depth, QueryError
         let lower = core_distance(bodies, &near).map_or(0.0, |apart| (least - apart).next_down());
         let lower = if upper == 0.0 { 0.0 } else { lower.max(0.0) };
         let near = (lower > 0.0).then(|| near_points(bodies, near));
-        return Ok(Depth { lower, upper, direction, enclosure: Default::default(), near, steps });
+        return Ok(Depth { lower, upper, direction, enclosure: Enclosure::default(), near, steps });
     }
     let cores = core_depth(bodies, enough - least)?;
     let upper = (cores.upper + most).next_up();

@@ -11,8 +11,7 @@ use colltrans_kernel::{height_bounds, noise, volume};
 pub(super) fn verify_plane(bodies: &TwoBodies, plane: &PlaneGap) -> Result<f64, CertificateError> {
     let &PlaneGap { normal, gap } = plane;
     check_unit_normal(normal)?;
-    let proven =
-        super::rounded::plane_gap(bodies, PlaneGap { normal, gap: bodies.proven_gap(normal) }).gap;
+    let proven = bodies.proven_gap(normal);
     if gap >= 0.0 && gap <= proven {
         Ok(proven)
     } else {

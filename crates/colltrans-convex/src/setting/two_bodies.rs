@@ -156,33 +156,6 @@ impl<B: VertexHull> TwoBodies<'_, B> {
         height_bounds::distance_lower_bound(normal, fixed, moving, self.offset_and_error())
     }
 
-    /// Returns the gap that the plane with this normal proves between the bodies, in world units, rounded
-    /// down. A check accepts any gap up to this one.
-    #[inline]
-    pub fn proven_gap(&self, normal: DVec3) -> f64 {
-        let [_, square] = height_bounds::dot_bounds(normal, normal);
-        (self.distance_along(normal) / square.sqrt().next_up()).next_down()
-    }
-
-    /// Returns the gap that the plane with this normal proves between the inputs of the bodies, in world
-    /// units. A search claims this gap.
-    ///
-    /// It is [`Self::proven_gap`] less [`Self::input_excess`].
-    #[inline]
-    pub fn input_gap(&self, normal: DVec3) -> f64 {
-        let (gap, excess) = (self.proven_gap(normal), self.input_excess());
-        if excess == 0.0 { gap } else { (gap - excess).next_down() }
-    }
-
-    /// Returns a bound on the sum of the distances by which input points lie outside of their bodies, in
-    /// world units.
-    #[inline]
-    pub fn input_excess(&self) -> f64 {
-        (self.moving.input_excess() + self.fixed.input_excess()) * MAX_STRETCH
-    }
-}
-
-impl TwoBodies<'_> {
     /// Returns lower and upper bounds of the sum of `min_gap` and the radii of both bodies, in world units. They
     /// are equal if the sum is exact.
     ///
@@ -199,10 +172,58 @@ impl TwoBodies<'_> {
 
     /// Checks whether a body is rounded.
     #[inline]
-    pub(crate) fn is_rounded(&self) -> bool {
+    pub fn is_rounded(&self) -> bool {
         self.moving.radius() + self.fixed.radius() != 0.0
     }
 
+    /// Returns the gap that the plane with this normal proves between the cores of the bodies, in world units,
+    /// rounded down.
+    #[inline]
+    fn proven_core_gap(&self, normal: DVec3) -> f64 {
+        let [_, square] = height_bounds::dot_bounds(normal, normal);
+        (self.distance_along(normal) / square.sqrt().next_up()).next_down()
+    }
+
+    /// Returns the gap that the plane with this normal proves between the bodies, in world units, rounded
+    /// down. A check accepts any gap up to this one.
+    #[inline]
+    pub fn proven_gap(&self, normal: DVec3) -> f64 {
+        self.less_radii(self.proven_core_gap(normal))
+    }
+
+    /// Returns a gap of the cores less both radii, rounded down; the gap itself if no body is rounded.
+    #[inline]
+    pub fn less_radii(&self, core_gap: f64) -> f64 {
+        let [_, radii] = self.core_gap_bounds(0.0);
+        if radii == 0.0 { core_gap } else { (core_gap - radii).next_down() }
+    }
+
+    /// Returns the gap that the plane with this normal proves between the inputs of the cores of the bodies, in
+    /// world units.
+    ///
+    /// It is the gap of the cores less [`Self::input_excess`].
+    #[inline]
+    pub fn input_core_gap(&self, normal: DVec3) -> f64 {
+        let (gap, excess) = (self.proven_core_gap(normal), self.input_excess());
+        if excess == 0.0 { gap } else { (gap - excess).next_down() }
+    }
+
+    /// Returns the gap that the plane with this normal proves between the inputs of the bodies, in world
+    /// units: [`Self::input_core_gap`] less both radii. A search claims this gap.
+    #[inline]
+    pub fn input_gap(&self, normal: DVec3) -> f64 {
+        self.less_radii(self.input_core_gap(normal))
+    }
+
+    /// Returns a bound on the sum of the distances by which input points lie outside of their bodies, in
+    /// world units.
+    #[inline]
+    pub fn input_excess(&self) -> f64 {
+        (self.moving.input_excess() + self.fixed.input_excess()) * MAX_STRETCH
+    }
+}
+
+impl TwoBodies<'_> {
     /// Returns the points of the surfaces of the rounded bodies that correspond to points of their cores, in the
     /// world: each moved by its body's radius towards the other body, along the unit vector `normal`.
     #[inline]

@@ -425,9 +425,7 @@ fn not_converged(reason: Stalled) -> QueryError {
 
 /// Returns the separation of the bodies, from the margin of their cores.
 fn separation_of_bodies(setting: &Setting, normal: DVec3, core_margin: f64) -> Separation {
-    let [_, radii] = setting.core_gap_bounds(0.0);
-    let margin = if radii == 0.0 { core_margin } else { (core_margin - radii).next_down() };
-    Separation { normal, margin }
+    Separation { normal, margin: setting.less_radii(core_margin) }
 }
 
 /// Lowers the outcome of cores without a gap by a slight gap, the minimum gap `min_gap` plus both radii. `None` for

@@ -10,7 +10,7 @@
 //!   ([`Noise::mean_length_margin`]).
 //! - *Lower*: the height along a rounded unit normal is lowered by one noise and by the excess of the bodies beyond the
 //!   support points ([`TwoBodies::support_with_excess`]). Near contact, if this bound is not positive, the heights of
-//!   all vertices are computed nearly without rounding ([`TwoBodies::input_gap`]).
+//!   all vertices are computed nearly without rounding ([`TwoBodies::input_core_gap`]).
 
 mod depth;
 mod gjk;
@@ -420,7 +420,7 @@ impl DescentResult {
         if is_open && is_near { self.sharpest_plane(difference).or(plane) } else { plane }
     }
 
-    /// Returns the best of three planes by the gap that verification computes ([`TwoBodies::input_gap`]).
+    /// Returns the best of three planes by the gap that verification computes ([`TwoBodies::input_core_gap`]).
     ///
     /// The normals are that of the simplex (or of its first point) in both senses, and that of the stored plane. `None`
     /// if no gap is positive, or the simplex has no normal.
@@ -433,7 +433,7 @@ impl DescentResult {
         let planes = [normal, -normal, self.normal]
             .into_iter()
             .filter_map(unit_vector)
-            .map(|normal| PlaneGap { normal, gap: difference.bodies.input_gap(normal) });
+            .map(|normal| PlaneGap { normal, gap: difference.bodies.input_core_gap(normal) });
         let gap = planes.max_by(|a, b| a.gap.total_cmp(&b.gap)).filter(|plane| plane.gap > 0.0)?;
         let lowest = difference.support_point(gap.normal, self.lowest).pair;
         Some(GapPlane { gap, lowest, excess: 0.0 })

@@ -53,6 +53,7 @@ impl ConvexPolyhedron {
     /// - [`BuildError::TooThin`] if the body contains no ball of this radius, or if rounding leaves no volume. This
     ///   includes a flat polygon, a segment and a point.
     /// - [`BuildError::Amount`] if the amount is negative or not finite.
+    /// - [`BuildError::Rounded`] for a rounded body.
     ///
     /// An amount of 0 returns any body unchanged.
     ///
@@ -115,6 +116,10 @@ impl ConvexPolyhedron {
         }
         if amount == 0.0 {
             return Ok((self.clone(), OffsetReport::default()));
+        }
+        if self.radius != 0.0 {
+            let operation = if inwards > 0.0 { "shrinking" } else { "growing" };
+            return Err(BuildError::Rounded { operation, radius: self.radius });
         }
         if inwards > 0.0 && self.dimension < 3 {
             return Err(BuildError::TooThin { amount, fits: 0.0 });

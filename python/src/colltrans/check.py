@@ -281,12 +281,16 @@ def check_closed(points: list[Vector], facets: list[tuple[int, int, int]]) -> No
 
 @dataclass(frozen=True)
 class Body:
-    """Points in the body frame and the pose ``R x + t``; a solid also has facets."""
+    """Points in the body frame and the pose ``R x + t``; a solid also has facets.
+
+    A convex body is the hull of its points, swept by a ball of the radius.
+    """
 
     points: list[Vector]
     rows: Matrix
     offset: Vector
     facets: list[tuple[int, int, int]]
+    radius: Fraction = Fraction()
 
     @staticmethod
     def shape(shape: Any) -> tuple[list[Vector], list[tuple[int, int, int]]]:
@@ -295,7 +299,9 @@ class Body:
         facets: list[tuple[int, int, int]] = []
         ((kind, content),) = shape.items()
         if kind == "convex":
-            content = fields(content, "vertices faces input_indices hull_error", "input_excess")
+            content = fields(
+                content, "vertices faces input_indices hull_error", "input_excess radius"
+            )
             points = [place(v) for v in listed(content["vertices"])]
             described(points, content)
         elif kind == "pieces":
@@ -334,6 +340,15 @@ class Body:
         if dot(rows[0], cross(rows[1], rows[2])) < 0:
             raise NoProofError("a pose is a reflection")
         return cls(points, rows, place(pose["translation"]), facets)
+
+    @staticmethod
+    def radius_of(shape: Any) -> Fraction:
+        """Returns the radius of a rounded body, 0 for other bodies."""
+        said = shape["convex"].get("radius") if "convex" in shape else None
+        radius = number(0.0 if said is None else said)
+        if radius != 0 and not _RANGE[0] <= radius <= _RANGE[1]:
+            raise RefusedError(f"a radius of {float(radius)!r} is not from 2^-200 to 2^200")
+        return radius
 
     def at(self, k: int) -> Vector:
         """Returns a point in the world."""
@@ -571,7 +586,11 @@ def contact(
     which: str,
     min_gap: Fraction = _NO_GAP,
 ) -> None:
-    """Checks both bounds of a certificate between convex bodies."""
+    """Checks both bounds of a certificate between convex bodies.
+
+    Rounded bodies are as near as ``min_gap`` where the hulls of their points are as near as the sum of
+    ``min_gap`` and both radii.
+    """
     proof = fields(proof, "normal lower pairs weights upper rounding")
     normal = vector(proof["normal"])
     unit(normal)
@@ -580,10 +599,11 @@ def contact(
         raise RefusedError(f"{which}: the normal does not point along the direction")
     lower = number(proof["lower"])
     gap = min(fixed.heights(normal)) - max(moving.heights(normal))
+    said, min_gap = min_gap, min_gap + radii(moving, fixed)
     if not above(gap - lower * along, min_gap * min_gap * dot(normal, normal)):
         proven = float((gap - min_gap) / along)
         raise RefusedError(f"{which}: the plane proves {proven!r}, not {float(lower)!r}")
-    meet = f"are nearer than {float(min_gap)!r}" if min_gap else "meet"
+    meet = f"are nearer than {float(said)!r}" if said else "meet"
     report.holds.append(f"{which}: the bodies {meet} at no translation below {float(lower)!r}")
 
     noise = _NOISE * (size(moving, fixed) + min_gap)
@@ -605,7 +625,8 @@ def contact(
         raise RefusedError(f"{which}: the bounds are in the wrong order")
     between = minus(point, scaled(d, upper))
     if min_gap and above(min_gap, dot(between, between)):
-        report.holds.append(f"{which}: the bodies are as near at one of at most {float(upper)!r}")
+        meet = "are as near" if said else "do meet"
+        report.holds.append(f"{which}: the bodies {meet} at one of at most {float(upper)!r}")
         return
     if min_gap > _SLIGHT * noise:
         raise RefusedError(f"{which}: the witness points are not as near as {float(min_gap)!r}")
@@ -641,6 +662,11 @@ def size(moving: Body, fixed: Body) -> Fraction:
     between = minus(fixed.offset, moving.offset)
     reach = moving.reach() + fixed.reach() + math.sqrt(float(dot(between, between)))
     return max(Fraction(reach), _RANGE[0])
+
+
+def radii(moving: Body, fixed: Body) -> Fraction:
+    """Returns the sum of the radii of both bodies."""
+    return moving.radius + fixed.radius
 
 
 def across(d: Vector, normal: Vector) -> Vector:
@@ -681,8 +707,9 @@ def slide(
     """Checks the overlap of the shadows, including the gap, along the direction."""
     claim = fields(claim, "normal overlap")
     normal, overlap = vector(claim["normal"]), number(claim["overlap"])
-    if not are_shadows_apart(moving, fixed, d, normal, min_gap - overlap):
-        proven = float(min_gap) - shadows_apart(moving, fixed, d, normal)
+    core_gap = min_gap + radii(moving, fixed)
+    if not are_shadows_apart(moving, fixed, d, normal, core_gap - overlap):
+        proven = float(core_gap) - shadows_apart(moving, fixed, d, normal)
         raise RefusedError(f"the bodies overlap by {proven!r} there, not {float(overlap)!r}")
     report.holds.append(
         "the bodies slide along each other: seen along the direction they overlap by at most "
@@ -696,8 +723,9 @@ def separation(
     """Checks a separating plane between convex bodies."""
     proof = fields(proof, "normal margin")
     normal, margin = vector(proof["normal"]), number(proof["margin"])
-    if margin <= min_gap or not are_shadows_apart(moving, fixed, d, normal, margin):
-        proven = shadows_apart(moving, fixed, d, normal)
+    swept = radii(moving, fixed)
+    if margin <= min_gap or not are_shadows_apart(moving, fixed, d, normal, margin + swept):
+        proven = shadows_apart(moving, fixed, d, normal) - float(swept)
         raise RefusedError(f"the plane proves a margin of {proven!r}, not {float(margin)!r}")
     report.holds.append(
         f"the bodies {never_near(min_gap)}: a gap of {float(margin)!r} is between them"
@@ -862,7 +890,7 @@ def encloses(corners: Sequence[Vector]) -> bool:
 def distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     """Checks the bounds of the distance of convex bodies."""
     claim = fields(claim, "", "gap near")
-    gap, near = claim["gap"], claim["near"]
+    gap, near, swept = claim["gap"], claim["near"], radii(moving, fixed)
     if gap is None and near is None:
         raise NoProofError("no distance is claimed")
     if gap is not None:
@@ -870,7 +898,8 @@ def distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
         normal, lower = vector(gap["normal"]), number(gap["gap"])
         unit(normal)
         proven = min(fixed.heights(normal)) - max(moving.heights(normal))
-        if lower < 0 or not above(proven, lower * lower * dot(normal, normal)):
+        between = lower + swept
+        if lower < 0 or not above(proven, between * between * dot(normal, normal)):
             raise RefusedError(f"the plane proves a gap of {float(proven)!r}, not {float(lower)!r}")
         report.holds.append(f"the bodies are at least {float(lower)!r} apart")
     if near is None:
@@ -879,19 +908,31 @@ def distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     upper, ends = number(near["distance"]), ends_of(moving, fixed, listed(near["pairs"], 4))
     shares = [number(weight) for weight in listed(near["weights"], 4)]
     if upper == 0:
-        if not encloses([minus(q, p) for p, q in ends]):
+        enclosed = encloses([minus(q, p) for p, q in ends])
+        if not enclosed and not (swept and are_points_near(ends, shares, swept)):
             raise RefusedError("the pairs do not enclose the origin")
         report.holds.append("the bodies have a point in common")
         return
     p, q = (mean([end[k] for end in ends], shares) for k in (0, 1))
-    apart(p, q, upper, report)
+    apart(p, q, upper, report, swept)
 
 
-def apart(p: Vector, q: Vector, upper: Fraction, report: Report) -> None:
-    """Checks the distance of a point of each body as an upper bound."""
+def are_points_near(
+    ends: Sequence[tuple[Vector, Vector]], shares: Sequence[Any], length: Fraction
+) -> bool:
+    """Checks whether the weighted means of pairs of points are at most a length apart."""
+    p, q = (mean([end[k] for end in ends], shares) for k in (0, 1))
     between = minus(q, p)
-    if not above(upper, dot(between, between)):
-        found = math.sqrt(float(dot(between, between)))
+    return above(length, dot(between, between))
+
+
+def apart(
+    p: Vector, q: Vector, upper: Fraction, report: Report, swept: Fraction = _NO_GAP
+) -> None:
+    """Checks the distance of a point of each body as an upper bound, less both radii."""
+    between = minus(q, p)
+    if upper < 0 or not above(upper + swept, dot(between, between)):
+        found = math.sqrt(float(dot(between, between))) - float(swept)
         raise RefusedError(f"the points are {found!r} apart, not {float(upper)!r}")
     report.holds.append(f"the bodies are at most {float(upper)!r} apart")
 
@@ -941,13 +982,16 @@ def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> Non
 def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     """Checks the bounds of the shortest translation that separates convex bodies."""
     # The step counts are optional and are not read.
-    claim = fields(claim, "lower upper direction enclosure", "steps")
+    claim = fields(claim, "lower upper direction enclosure", "near steps")
     d, lower, upper = vector(claim["direction"]), number(claim["lower"]), number(claim["upper"])
     unit(d)
+    swept = radii(moving, fixed)
     reach = -(min(moving.heights(d)) - max(fixed.heights(d)))
-    if reach > 0 and not above(upper, reach * reach / dot(d, d)):
+    # The translation must be at least reach / |d|, of either sign, plus both radii.
+    square, rest = reach * reach / dot(d, d), upper - swept
+    if not above(rest, square) if reach > 0 else rest < 0 and rest * rest > square:
         raise RefusedError(
-            f"a translation by {float(reach)!r} separates the bodies, not {float(upper)!r}"
+            f"a translation by {float(reach + swept)!r} separates the bodies, not {float(upper)!r}"
         )
     if upper < 0 or not 0 <= lower <= upper:
         raise RefusedError("the bounds are in the wrong order")
@@ -955,12 +999,22 @@ def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
         f"a translation by {float(upper)!r} along the direction separates the bodies"
     )
     surface = fields(claim["enclosure"], "pairs triangles normals")
-    if lower > 0 or any(listed(part) for part in surface.values()):
+    near = claim["near"]
+    if near is not None and not any(listed(part) for part in surface.values()):
+        near = fields(near, "pairs weights distance")
+        ends = ends_of(moving, fixed, listed(near["pairs"], 4))
+        shares = [number(weight) for weight in listed(near["weights"], 4)]
+        enclosed = number(near["distance"]) == 0 and encloses([minus(q, p) for p, q in ends])
+        rest = swept - lower
+        if not swept or not (enclosed and rest >= 0 or are_points_near(ends, shares, rest)):
+            raise RefusedError(f"the points do not prove a depth of {float(lower)!r}")
+        report.holds.append(f"no translation below {float(lower)!r} separates them")
+    elif lower > 0 or any(listed(part) for part in surface.values()):
         corners = [minus(q, p) for p, q in ends_of(moving, fixed, surface["pairs"])]
         triangles = [listed(t, 3) for t in listed(surface["triangles"])]
         for normal in listed(surface["normals"], len(triangles)):
             unit(vector(normal), "the normal of a triangle")
-        enclosure(corners, surface, lower)
+        enclosure(corners, surface, max(lower - swept, _NO_GAP))
         for a, b, c in triangles:
             if dot(corners[a], cross(corners[b], corners[c])) < 0:
                 raise RefusedError("a triangle is turned away, as seen from the origin")
@@ -1070,6 +1124,9 @@ class File:
                 content["query"], *(kind for kind in PLACEMENTS if kind != "pair")
             )
         _, placement = one_of(content["placement"], PLACEMENTS[asked])
+        if PLACEMENTS[asked] != "poses" or asked == "scene":
+            if any(Body.radius_of(body) for body in bodies):
+                raise NoProofError(f"this program does not check a {asked} of rounded bodies")
         return cls(bodies, shapes, asked, query, placement)
 
     def number(self, value: Any) -> int:
@@ -1078,7 +1135,9 @@ class File:
 
     def placed(self, of: Any) -> Body:
         """Returns a body at its pose."""
-        return Body.placed(*self.shapes[self.number(of["body"])], of["pose"])
+        which = self.number(of["body"])
+        body = Body.placed(*self.shapes[which], of["pose"])
+        return replace(body, radius=Body.radius_of(self.bodies[which]))
 
     def poses(self) -> list[Body]:
         """Returns the bodies at their poses, the moving one first."""

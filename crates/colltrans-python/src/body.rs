@@ -81,6 +81,8 @@ getters!(ConvexPolyhedron, |it| {
     dimension: u8 = it.0.dimension();
     /// float: The largest distance of an input point from the body, a length of the order of rounding errors.
     hull_error: f64 = it.0.hull_error();
+    /// float: The radius of the ball that sweeps the body (:meth:`rounded`); 0 for a polyhedron.
+    radius: f64 = it.0.radius();
     /// float: The volume, in the cube of the unit of length.
     volume: f64 = it.0.volume();
     /// int: Bytes of memory that the body occupies now. The sections for ``solver="cta"`` count once they are
@@ -189,6 +191,96 @@ impl ConvexPolyhedron {
     fn cuboid(low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>) -> PyResult<Self> {
         let (low, high) = (vector(low, "low")?, vector(high, "high")?);
         colltrans::ConvexPolyhedron::cuboid(low, high).or_raise().map(Self::from)
+    }
+
+    /// Builds a sphere, exactly: a point with a radius.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : float
+    /// center : array_like of shape (3,)
+    ///     In the body frame; the origin by default.
+    ///
+    /// Returns
+    /// -------
+    /// ConvexPolyhedron
+    ///
+    /// Raises
+    /// ------
+    /// BuildError
+    ///     The radius is negative, not finite or out of range.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron, cast
+    /// >>> ball = ConvexPolyhedron.sphere(0.5)
+    /// >>> floor = ConvexPolyhedron.cuboid([-9, -9, -1], [9, 9, 0])
+    /// >>> float(cast(ball.at([0, 0, 3]), floor, [0, 0, -1]).translation)
+    /// 2.5
+    #[staticmethod]
+    #[pyo3(signature = (radius, center=None))]
+    fn sphere(radius: f64, center: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let center = center.map_or(Ok(DVec3::ZERO), |center| vector(center, "center"))?;
+        colltrans::ConvexPolyhedron::sphere(center, radius).or_raise().map(Self::from)
+    }
+
+    /// Builds a capsule, exactly: a segment with a radius.
+    ///
+    /// Parameters
+    /// ----------
+    /// start, end : array_like of shape (3,)
+    ///     The ends of the segment, in the body frame.
+    /// radius : float
+    ///
+    /// Returns
+    /// -------
+    /// ConvexPolyhedron
+    ///
+    /// Raises
+    /// ------
+    /// BuildError
+    ///     The radius is negative, not finite or out of range.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron, distance
+    /// >>> pill = ConvexPolyhedron.capsule([-1, 0, 0], [1, 0, 0], 0.25)
+    /// >>> distance(pill, pill.at([0, 2, 0])).upper < 1.5 + 1e-12
+    /// True
+    #[staticmethod]
+    fn capsule(start: &Bound<'_, PyAny>, end: &Bound<'_, PyAny>, radius: f64) -> PyResult<Self> {
+        let ends = [vector(start, "start")?, vector(end, "end")?];
+        colltrans::ConvexPolyhedron::capsule(ends, radius).or_raise().map(Self::from)
+    }
+
+    /// Returns the body swept by a ball: all points at a distance of at most ``radius`` from it.
+    ///
+    /// Vertices, faces and features of the result are those of the body without radius. Nothing is tessellated.
+    /// Casts, distances, depths, motions and :class:`Obstacles` of convex bodies accept rounded bodies; queries
+    /// about solids refuse them.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : float
+    ///     It is added to the radius of a body that is rounded already.
+    ///
+    /// Returns
+    /// -------
+    /// ConvexPolyhedron
+    ///
+    /// Raises
+    /// ------
+    /// BuildError
+    ///     The radius is negative, not finite or out of range.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron
+    /// >>> ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1]).rounded(0.1).radius
+    /// 0.1
+    fn rounded(&self, radius: f64) -> PyResult<Self> {
+        let body = self.0.clone().rounded(radius).or_raise()?;
+        Ok(Self(body, self.1.clone(), self.2))
     }
 
     /// Reads the text that `to_json` wrote. The body has the same bits.
@@ -376,7 +468,10 @@ impl ConvexPolyhedron {
 
     fn __repr__(&self) -> String {
         let (v, e, f) = (self.0.vertices().len(), self.0.edge_count(), self.0.face_count());
-        format!("ConvexPolyhedron({v} vertices, {e} edges, {f} faces)")
+        match self.0.radius() {
+            0.0 => format!("ConvexPolyhedron({v} vertices, {e} edges, {f} faces)"),
+            r => format!("ConvexPolyhedron({v} vertices, {e} edges, {f} faces, radius {r:?})"),
+        }
     }
 }
 

@@ -108,7 +108,8 @@ pub(super) const SEE_ALL: &str = "\
 
 /// Begins the topic of file formats; the names of the mesh formats follow from the code.
 fn mesh_files() -> String {
-    format!("Mesh files: {}, recognised by the extension. {VERTICES}", Format::list_names("and"))
+    let formats = Format::list_names("and");
+    format!("Mesh files: {formats}, recognised by the extension. {VERTICES}\n\n{SHAPES}")
 }
 
 /// Returns the topic `colltrans help files`.
@@ -125,6 +126,11 @@ const VERTICES: &str = "\
 Vertex indices in answers count from 0
 in the order of the file. Equal corners of STL triangles are merged, in the order of their first
 appearance. Features are named by them: a face is the whole polygon, an edge joins two corners.";
+
+const SHAPES: &str = "\
+Shapes instead of files of convex bodies: sphere:R, capsule:AX,AY,AZ,BX,BY,BZ,R (the ends of its
+axis), box:X,Y,Z, and box:X,Y,Z,R (rounded by R). They are exact. Spheres and boxes are centred.
+Features name the vertices, edges and faces of the point, the segment or the box.";
 
 const UNITS_AND_POSES: &str = "\
 Units: lengths are in the unit of the files, which must be the same for both meshes (--moving-scale
@@ -428,8 +434,9 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
    "start": "center"|"ellipsoids", "until": "exit"|SHARE (of "cta"),
    "tolerance": L (of solids and motions),
    "ignore_start_overlaps": true|false (of solids)}
-  BODY = {"points": [[x,y,z],...]} (their convex hull)
-       or {"mesh": "path", "hull": true|false, "scale": FACTOR} (convex)
+  BODY = {"points": [[x,y,z],...], "radius": R} (their convex hull, rounded by R)
+       or {"sphere": R}, or {"capsule": [[x,y,z],[x,y,z]], "radius": R}
+       or {"mesh": "path", "hull": true|false, "scale": FACTOR, "radius": R} (convex)
        or {"solid": "path", "scale": FACTOR, "open": true|false} (any shape)
   (defaults of hull and scale: as --hull, and 1)
   POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, each optional. A quaternion with few

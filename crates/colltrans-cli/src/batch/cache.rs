@@ -15,12 +15,12 @@ use crate::solid;
 /// The source of a body.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Key {
-    /// A mesh file that becomes a convex body, whether its hull is taken, and the bits of its scale.
-    Mesh { path: PathBuf, hull: bool, scale: u64 },
+    /// A mesh file that becomes a convex body, whether its hull is taken, and the bits of its scale and radius.
+    Mesh { path: PathBuf, hull: bool, scale: u64, radius: u64 },
     /// A mesh file that need not be convex, the bits of its scale, and whether it may be open.
     Solid { path: PathBuf, scale: u64, open: bool },
-    /// Points, by the exact bits of their coordinates.
-    Points(Vec<[u64; 3]>),
+    /// Points, by the exact bits of their coordinates, and the bits of the radius.
+    Points { points: Vec<[u64; 3]>, radius: u64 },
 }
 
 /// A body of either kind.
@@ -112,7 +112,7 @@ impl Cache {
 /// Returns the memory of an entry in bytes.
 fn entry_bytes(key: &Key, body: &BuildResult) -> usize {
     let key = match key {
-        Key::Points(points) => points.len() * size_of::<[u64; 3]>(),
+        Key::Points { points, .. } => points.len() * size_of::<[u64; 3]>(),
         Key::Mesh { path, .. } | Key::Solid { path, .. } => path.as_os_str().len(),
     };
     key + body.as_ref().map_or(0, |shape| shape.memory_bytes()) + ENTRY_BYTES
@@ -165,7 +165,7 @@ mod tests {
     use colltrans::glam::DVec3;
 
     fn key(x: f64) -> Key {
-        Key::Points(vec![[x.to_bits(), 0, 0]])
+        Key::Points { points: vec![[x.to_bits(), 0, 0]], radius: 0 }
     }
 
     /// Returns the number of bodies that were built after each of these uses.

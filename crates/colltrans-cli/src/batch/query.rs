@@ -126,24 +126,36 @@ impl Batch {
     /// # Errors
     /// The fields contradict each other, the file cannot be read, or no body of this kind can be built.
     pub(crate) fn build_body(&self, source: &BodySource) -> BuildResult {
-        let &BodySource { ref points, ref mesh, ref solid, open, hull, scale } = source;
+        let &BodySource { ref points, ref mesh, ref solid, open, hull, scale, .. } = source;
+        let round = source.round_shape()?;
+        let (points, radius) = match &round {
+            Some((points, radius)) => (Some(&points[..]), *radius),
+            None => (points.as_deref(), source.radius.unwrap_or(0.0)),
+        };
+        if solid.is_some() && source.radius.is_some() {
+            return Err("`radius` requires `points`, a `mesh` or a `capsule`".into());
+        }
         if open.is_some() && solid.is_none() {
             return Err("`open` requires a `solid`".into());
         }
         match (points, mesh, solid) {
             (Some(points), None, None) if hull.is_none() && scale.is_none() => {
                 let bits = points.iter().map(|p| p.map(f64::to_bits)).collect();
-                self.cache.get_or_build(Key::Points(bits), |_| hull_of_points(points))
+                let key = Key::Points { points: bits, radius: radius.to_bits() };
+                self.cache.get_or_build(key, |_| hull_of_points(points, radius))
             }
             (Some(_), None, None) => Err("`hull` and `scale` require a `mesh`".into()),
             (None, Some(path), None) => {
-                self.build_mesh(path, hull.unwrap_or(self.hull), checked_scale(scale)?)
+                self.build_mesh(path, hull.unwrap_or(self.hull), checked_scale(scale)?, radius)
             }
             (None, None, Some(path)) if hull.is_none() => {
                 self.build_solid(path, checked_scale(scale)?, open.unwrap_or_default())
             }
             (None, None, Some(_)) => Err("`hull` requires a `mesh`".into()),
-            _ => Err("a body needs exactly one of `points`, `mesh` and `solid`".into()),
+            _ => {
+                Err("a body needs exactly one of `points`, `sphere`, `capsule`, `mesh` and `solid`"
+                    .into())
+            }
         }
     }
 
@@ -160,14 +172,16 @@ impl Batch {
     }
 
     /// Returns the convex body of a mesh file.
-    fn build_mesh(&self, path: &Path, hull: bool, scale: f64) -> BuildResult {
+    fn build_mesh(&self, path: &Path, hull: bool, scale: f64, radius: f64) -> BuildResult {
         let path = self.folder.join(path);
-        let key = Key::Mesh { path: path.clone(), hull, scale: scale.to_bits() };
+        let [scale_bits, radius_bits] = [scale, radius].map(f64::to_bits);
+        let key = Key::Mesh { path: path.clone(), hull, scale: scale_bits, radius: radius_bits };
         self.cache.get_or_build(key, |_| {
             self.replaced_file.record_read(&path);
             let options = self.body.options(scale).with_hull(hull);
             let part = body::load(&path, &options).map_err(|error| mesh_error_message(&error))?;
-            Ok(Arc::new(Shape::Convex(part)))
+            let body = part.body.rounded(radius).map_err(|error| error.to_string())?;
+            Ok(Arc::new(Shape::Convex(Part { body, ..part })))
         })
     }
 }
@@ -197,9 +211,10 @@ fn checked_scale(scale: Option<f64>) -> Result<f64, String> {
 }
 
 /// Returns the convex hull of points.
-fn hull_of_points(points: &[[f64; 3]]) -> BuildResult {
+fn hull_of_points(points: &[[f64; 3]], radius: f64) -> BuildResult {
     let points: Vec<DVec3> = points.iter().copied().map(DVec3::from_array).collect();
-    let body = ConvexPolyhedron::from_points(&points).map_err(|e| e.to_string())?;
+    let hull = ConvexPolyhedron::from_points(&points);
+    let body = hull.and_then(|hull| hull.rounded(radius)).map_err(|e| e.to_string())?;
     Ok(Arc::new(Shape::Convex(Part::from_body(body))))
 }
 

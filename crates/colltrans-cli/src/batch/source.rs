@@ -56,10 +56,19 @@ pub(super) enum QueryName {
     MotionClearance,
 }
 
+/// The points of the core of a round body, and its radius.
+pub(super) type RoundShape = (Vec<[f64; 3]>, f64);
+
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object with a body")]
 pub(crate) struct BodySource {
     pub(super) points: Option<Vec<[f64; 3]>>,
+    /// Radius of a sphere about the origin.
+    pub(super) sphere: Option<f64>,
+    /// Ends of the axis of a capsule.
+    pub(super) capsule: Option<[[f64; 3]; 2]>,
+    /// Radius of a capsule, or by which points or a mesh are rounded.
+    pub(super) radius: Option<f64>,
     pub(super) mesh: Option<PathBuf>,
     pub(super) solid: Option<PathBuf>,
     pub(super) open: Option<bool>,
@@ -75,6 +84,28 @@ pub(crate) struct PoseSource {
 }
 
 impl BodySource {
+    /// Returns the points and the radius of a sphere or a capsule, `None` for another body.
+    ///
+    /// # Errors
+    /// The body is a sphere or a capsule, and another body as well, or its radius is missing or given twice.
+    pub(super) fn round_shape(&self) -> Result<Option<RoundShape>, String> {
+        let is_other = self.points.is_some() || self.mesh.is_some() || self.solid.is_some();
+        let found = match (self.sphere, self.capsule, self.radius) {
+            (None, None, _) => return Ok(None),
+            (Some(radius), None, None) => (vec![[0.0; 3]], radius),
+            (None, Some(ends), Some(radius)) => (ends.to_vec(), radius),
+            (None, Some(_), None) => return Err("a `capsule` requires a `radius`".into()),
+            (Some(_), None, Some(_)) => return Err("`sphere` is the radius: omit `radius`".into()),
+            (Some(_), Some(_), _) => {
+                return Err("a body is a `sphere` or a `capsule`, not both".into());
+            }
+        };
+        if is_other {
+            return Err("a `sphere` or a `capsule` excludes `points`, `mesh` and `solid`".into());
+        }
+        Ok(Some(found))
+    }
+
     /// Returns the file of the body; `None` for points.
     pub(crate) fn file(&self) -> Option<&Path> {
         self.mesh.as_deref().or(self.solid.as_deref())

@@ -3,6 +3,7 @@
 //! A face of a convex body is hidden exactly if it looks away from the viewer. Therefore no two visible faces overlap on
 //! the page. An edge between a visible and a hidden face belongs to the silhouette.
 
+use crate::solid::drawn_body;
 use colltrans::glam::{DVec2, DVec3};
 use colltrans::{Aabb, ConvexPolyhedron, Feature, Pose};
 use colltrans_picture::{
@@ -48,6 +49,7 @@ impl Mark {
 impl Solid {
     /// Returns a convex body at a pose, relative to `origin`.
     pub(super) fn new(body: &ConvexPolyhedron, pose: &Pose, origin: DVec3) -> Self {
+        let body = &*drawn_body(body);
         // The translations are subtracted first, because their difference is exact for near bodies.
         let offset = pose.translation() - origin;
         let vertices: Vec<DVec3> =

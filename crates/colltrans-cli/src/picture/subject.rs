@@ -89,10 +89,13 @@ impl Subject {
             stop: contact.translation * length,
             normal: contact.normal,
             touches: true,
-            marks: Some(Marks {
-                moving: Mark::from_feature(features.moving, picture.cast.moving()),
-                fixed: Mark::from_feature(features.fixed, picture.cast.fixed()),
-            }),
+            // Features of rounded bodies are those of their cores, which are not drawn.
+            marks: (picture.cast.moving().radius() + picture.cast.fixed().radius() == 0.0).then(
+                || Marks {
+                    moving: Mark::from_feature(features.moving, picture.cast.moving()),
+                    fixed: Mark::from_feature(features.fixed, picture.cast.fixed()),
+                },
+            ),
             margin: None,
             link: None,
             meets: false,

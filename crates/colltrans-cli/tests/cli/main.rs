@@ -16,6 +16,7 @@ mod picture;
 mod proof;
 mod readme;
 mod replay;
+mod rounded;
 mod scene;
 mod setup;
 mod step;

@@ -9,6 +9,7 @@ mod excess;
 mod note;
 mod orient;
 mod repair;
+mod shape_name;
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -166,6 +167,14 @@ pub enum BodyError {
     /// The mesh needs repair, which is disabled. The notes describe the repairs.
     #[error("the mesh needs repair, which is disabled: {}", joined_notes(.0))]
     NeedsRepair(Vec<Note>),
+    /// The name begins with a shape, and its numbers are not those of the shape.
+    #[error("{name:?} describes no shape; accepted: {forms}, or a path that begins with ./")]
+    ShapeName {
+        /// The name as given.
+        name: String,
+        /// The accepted forms.
+        forms: &'static str,
+    },
 }
 
 impl BodyError {
@@ -180,7 +189,7 @@ impl BodyError {
                 | BuildError::InsideOut { .. }
                 | BuildError::Topology(_),
             ) => &[BodyKind::Solid, BodyKind::Hull],
-            Self::Convex(_) | Self::NeedsRepair(_) => &[],
+            Self::Convex(_) | Self::NeedsRepair(_) | Self::ShapeName { .. } => &[],
             Self::Solid(SolidError::Open { .. }) => &[BodyKind::Open, BodyKind::Hull],
             Self::Solid(_) => &[BodyKind::Hull],
         }
@@ -330,26 +339,49 @@ fn build_repaired(
     Ok((body, notes))
 }
 
-/// Reads a file as a [`convex`] body.
+/// Reads a file as a [`convex`] body, or builds the shape that the name describes: `sphere:R`,
+/// `capsule:AX,AY,AZ,BX,BY,BZ,R`, `box:X,Y,Z` or `box:X,Y,Z,R`. Of the options, shapes use the scale.
 ///
 /// # Errors
-/// The errors of [`read`](crate::read) and [`convex`].
+/// The errors of [`read`](crate::read) and [`convex`], and [`BodyError::ShapeName`] for a malformed shape.
 pub fn load_convex(
     path: impl AsRef<Path>,
     options: &BodyOptions,
 ) -> Result<Loaded<ConvexPolyhedron>, LoadError> {
-    load(path, options, |mesh, options| convex(&mesh, options))
+    match shape_of_name(path.as_ref(), options) {
+        Some(built) => built,
+        None => load(path, options, |mesh, options| convex(&mesh, options)),
+    }
 }
 
-/// Reads a file as a [`solid`].
+/// Reads a file as a [`solid`], or builds the box that the name describes, see [`load_convex`].
 ///
 /// # Errors
-/// The errors of [`read`](crate::read) and [`solid`].
+/// The errors of [`read`](crate::read) and [`solid`]. Round shapes are no solids ([`SolidError::Rounded`]).
 pub fn load_solid(
     path: impl AsRef<Path>,
     options: &BodyOptions,
 ) -> Result<Loaded<Solid>, LoadError> {
-    load(path, options, |mesh, options| solid(&mesh, options))
+    let path = path.as_ref();
+    let Some(built) = shape_of_name(path, options) else {
+        return load(path, options, |mesh, options| solid(&mesh, options));
+    };
+    let Loaded { body, precision, notes } = built?;
+    let body = Solid::from_convex(&body)
+        .map_err(|error| LoadError::Body { path: path.to_owned(), source: error.into() })?;
+    Ok(Loaded { body, precision, notes })
+}
+
+/// Builds the body that a name describes. Returns `None` if it names a file.
+fn shape_of_name(
+    path: &Path,
+    options: &BodyOptions,
+) -> Option<Result<Loaded<ConvexPolyhedron>, LoadError>> {
+    let built = shape_name::body_of_name(path.to_str()?, options.scale)?;
+    Some(match built {
+        Ok(body) => Ok(Loaded { body, precision: 0.0, notes: Vec::new() }),
+        Err(source) => Err(LoadError::Body { path: path.to_owned(), source }),
+    })
 }
 
 /// Reads a file and converts its mesh with `take`.

@@ -46,7 +46,8 @@
 //!
 //! A [`ConvexPolyhedron`] is built once, from points ([`ConvexPolyhedron::from_points`], their convex hull),
 //! from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked) or from two corners
-//! ([`ConvexPolyhedron::cuboid`]). Any number of queries can use it, from any thread. Flat polygons, segments
+//! ([`ConvexPolyhedron::cuboid`]). It can be [rounded](ConvexPolyhedron::rounded) by a radius: spheres and
+//! capsules. Any number of queries can use it, from any thread. Flat polygons, segments
 //! and single points are also bodies. Bodies that need not be convex are [`Solid`]s, with the same queries.
 //!
 //! # Frames and units
@@ -209,6 +210,11 @@ pub struct Casts;
 #[cfg(all(doctest, feature = "json"))]
 #[doc = include_str!("../../../docs/guide/distance.md")]
 pub struct Distances;
+
+/// The examples of `docs/guide/rounded.md`, compiled and run as tests.
+#[cfg(all(doctest, feature = "json"))]
+#[doc = include_str!("../../../docs/guide/rounded.md")]
+pub struct Rounded;
 
 /// The examples of `docs/guide/scenes.md`, compiled and run as tests.
 #[cfg(all(doctest, feature = "json"))]

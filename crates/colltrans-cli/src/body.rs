@@ -34,7 +34,8 @@ impl Part {
 
 /// Returns the bounding box of a convex body.
 pub(crate) fn convex_bounds(body: &ConvexPolyhedron) -> Aabb {
-    body.vertices().iter().fold(Aabb::EMPTY, |all, &v| all.union(&Aabb { low: v, high: v }))
+    let core = |all: Aabb, &v: &DVec3| all.union(&Aabb { low: v, high: v });
+    body.vertices().iter().fold(Aabb::EMPTY, core).expanded(body.radius())
 }
 
 /// Reads a mesh file as a convex body.

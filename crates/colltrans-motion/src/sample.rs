@@ -108,7 +108,10 @@ impl Sampler<ConvexPolyhedron> for ConvexSampler {
             _ if min_gap < 0.0 => self.least_overlap_plane(&difference),
             _ => (None, found.weighted_pairs_and_weights()),
         };
-        let floor = 4.0 * difference.noise.point_error() + error + difference.bodies.input_excess();
+        let floor = 4.0 * difference.noise.point_error()
+            + error
+            + difference.bodies.input_excess()
+            + 4.0 * f64::EPSILON * (between_cores - min_gap.max(0.0));
         let (normal, gap) =
             plane.map_or((DVec3::X, f64::NEG_INFINITY), |plane| (plane.normal, plane.gap));
         let gap = gap - min_gap - error;

@@ -237,7 +237,8 @@ fn verify_convex_clearance(
         }
         Clearance::Free(FreeReason::Slides(grazing)) => {
             let proven = verified_overlap(grazing.separating_direction, cast)?;
-            let noise: Noise = cast.setting.noise();
+            let [_, gap] = cast.setting.core_gap_bounds(cast.options.min_gap);
+            let noise = Noise::for_size(cast.setting.size() + gap);
             let most = cast.options.graze_tolerance.max(noise.touching_distance())
                 + 2.0 * noise.point_error();
             if proven <= most { Ok(NEVER) } else { Err(CertificateError::StartClaim) }

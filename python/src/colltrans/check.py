@@ -1000,7 +1000,7 @@ def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     )
     surface = fields(claim["enclosure"], "pairs triangles normals")
     near = claim["near"]
-    if near is not None and not any(listed(part) for part in surface.values()):
+    if lower > 0 and near is not None and not any(listed(part) for part in surface.values()):
         near = fields(near, "pairs weights distance")
         ends = ends_of(moving, fixed, listed(near["pairs"], 4))
         shares = [number(weight) for weight in listed(near["weights"], 4)]
@@ -1124,9 +1124,6 @@ class File:
                 content["query"], *(kind for kind in PLACEMENTS if kind != "pair")
             )
         _, placement = one_of(content["placement"], PLACEMENTS[asked])
-        if PLACEMENTS[asked] != "poses" or asked == "scene":
-            if any(Body.radius_of(body) for body in bodies):
-                raise NoProofError(f"this program does not check a {asked} of rounded bodies")
         return cls(bodies, shapes, asked, query, placement)
 
     def number(self, value: Any) -> int:
@@ -3716,6 +3713,9 @@ def check(text: str) -> Report:
             raise NoProofError(f"the version is {content.get('version')!r}, not {VERSION}")
         fields(content, "format version bodies placement query statement")
         file, report = File.read(content), Report()
+        if file.asked not in ("cast", "pair") and any(map(Body.radius_of, file.bodies)):
+            report.unchecked.append(f"the {file.asked}, whose bodies are rounded")
+            return report
         for k, body in enumerate(file.bodies):
             check_faces(report, k, body.get("convex"))
         kind, claim = one_of(content["statement"], *CLAIMS)

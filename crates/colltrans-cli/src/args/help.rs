@@ -130,7 +130,8 @@ appearance. Features are named by them: a face is the whole polygon, an edge joi
 const SHAPES: &str = "\
 Shapes instead of files of convex bodies: sphere:R, capsule:AX,AY,AZ,BX,BY,BZ,R (the ends of its
 axis), box:X,Y,Z, and box:X,Y,Z,R (rounded by R). They are exact. Spheres and boxes are centred.
-Features name the vertices, edges and faces of the point, the segment or the box.";
+Features name the vertices, edges and faces of the point, the segment or the box. `info`, `path`
+and queries about parts that are not convex do not accept round shapes.";
 
 const UNITS_AND_POSES: &str = "\
 Units: lengths are in the unit of the files, which must be the same for both meshes (--moving-scale

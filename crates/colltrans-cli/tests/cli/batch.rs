@@ -73,7 +73,7 @@ fn invalid_line_returns_one_error() {
         (with(BOX, r#"{"mesh":"dent.off"}"#), "bad".into(), r#""hull": true"#),
         (with(BOX, r#"{"points":[]}"#), "bad".into(), "no points"),
         (with(BOX, r#"{"points":[[1,2,1e999]]}"#), "bad".into(), "out of range"),
-        (with(BOX, "{}"), "bad".into(), "exactly one of `points`, `mesh`"),
+        (with(BOX, "{}"), "bad".into(), "exactly one of `points`, `sphere`"),
         (
             with("\"id\"", "\"moving_pose\":{\"rotation\":[0,0,0,2]},\"id\""),
             "bad".into(),

@@ -84,7 +84,8 @@ pub enum Within<B: Body = ConvexPolyhedron> {
 pub struct PlaneGap {
     /// Unit normal in the world, from the moving body to the fixed one.
     pub normal: DVec3,
-    /// Lower bound of `min_Q n.q - max_P n.p` and of the distance, in world units, rounded down.
+    /// Lower bound of `min_Q n.q - max_P n.p`, less the radii of rounded bodies, and of the distance, in world units,
+    /// rounded down.
     pub gap: f64,
 }
 
@@ -101,7 +102,7 @@ pub struct NearPoints {
     /// Weights of the pairs, not negative. The points are `sum w_i p_i / sum w_i` and
     /// `sum w_i q_i / sum w_i`.
     pub weights: [f64; 4],
-    /// Upper bound of the distance of the two points, in world units, rounded up.
+    /// Upper bound of the distance of the two points, less the radii of rounded bodies, in world units, rounded up.
     ///
     /// If it is 0, the differences of the pairs enclose the origin, so the bodies meet. The weights prove
     /// nothing in this case, except for rounded bodies: there the bodies also meet if the distance of the two points,

@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::Cast;
 use crate::answer::{CertificateError, check_lateral_normal, shadow_gap};
 
-/// Returns an upper bound of the overlap of two bodies' shadows along a normal, in world units. If the cast
-/// has a minimum gap, the gap is added.
+/// Returns an upper bound of the overlap of two bodies' shadows along a normal, in world units. The minimum
+/// gap and the radii of rounded bodies are added.
 #[inline]
 pub fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
     let gap = shadow_gap(&cast.setting, normal);

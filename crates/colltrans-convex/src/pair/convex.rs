@@ -16,7 +16,7 @@ use crate::solve::nearest::{
 
 /// Largest accepted difference of the bounds, in noises, in addition to the reach of the bodies beyond
 /// support points.
-const MAX_BOUND_GAP: f64 = 64.0;
+pub(super) const MAX_BOUND_GAP: f64 = 64.0;
 
 impl Pair<'_> {
     /// Computes the penetration depth: the length of the shortest translation, in any direction, that
@@ -163,7 +163,7 @@ fn distance_of_search(
         let reason = Stalled::Distance { lower, upper: near.distance, tolerance };
         return Err(QueryError::NotConverged { reason });
     }
-    let [on_moving, on_fixed] = nearest_points_in_world(bodies, &near);
+    let [on_moving, on_fixed] = core_points_in_world(bodies, &near);
     let distance = Distance {
         lower,
         upper: near.distance,
@@ -180,8 +180,20 @@ fn distance_of_search(
 }
 
 /// Returns the nearest points of the moving and of the fixed body, in the world, rounded.
+///
+/// Those of rounded bodies are on the round surfaces. If the bodies meet, both are one point of both bodies.
 #[inline]
 pub fn nearest_points_in_world(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
+    let cores = core_points_in_world(bodies, near);
+    if bodies.is_rounded() {
+        rounded::surface_points(bodies, cores, near.distance, None)
+    } else {
+        cores
+    }
+}
+
+/// Returns the nearest points of the cores, in the world, rounded.
+fn core_points_in_world(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
     let [p, q] = bodies.weighted_points(&near.pairs, &near.weights);
     let origin = bodies.translations[0];
     [bodies.moving_matrix * p + origin, bodies.fixed_matrix * q + bodies.offset + origin]

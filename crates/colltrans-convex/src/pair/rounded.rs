@@ -8,11 +8,11 @@
 
 use glam::DVec3;
 
-use super::convex::core_depth;
+use super::convex::{MAX_BOUND_GAP, core_depth};
 use super::verify::core_distance;
 use crate::answer::{Depth, Distance, Enclosure, NearPoints, PlaneGap};
 use crate::setting::TwoBodies;
-use crate::setting::error::QueryError;
+use crate::setting::error::{QueryError, Stalled};
 use crate::solve::nearest::{Difference, NearestPairs, nearest_points};
 
 /// Lowers the upper bound of a distance of cores by both radii. Changes nothing if no body is rounded.
@@ -37,13 +37,7 @@ pub(super) fn distance(bodies: &TwoBodies, cores: Distance) -> Distance {
     let gap = cores.gap.map(|plane| plane_gap(bodies, plane)).filter(|plane| plane.gap > 0.0);
     let near = near_points(bodies, cores.near);
     let points = [cores.on_moving, cores.on_fixed];
-    let between = points[1] - points[0];
-    let normal = between.try_normalize().or(cores.normal).unwrap_or(DVec3::ZERO);
-    let [on_moving, on_fixed] = if near.distance == 0.0 {
-        [common_point(bodies, points[0], between.length(), normal); 2]
-    } else {
-        bodies.surface_points(points, normal)
-    };
+    let [on_moving, on_fixed] = surface_points(bodies, points, near.distance, cores.normal);
     Distance {
         lower: gap.map_or(0.0, |plane| plane.gap),
         upper: near.distance,
@@ -54,6 +48,23 @@ pub(super) fn distance(bodies: &TwoBodies, cores: Distance) -> Distance {
         near,
         gap,
         steps: cores.steps,
+    }
+}
+
+/// Returns the nearest points of rounded bodies from those of their cores, in the world: one point of both bodies if
+/// their `distance` is 0. `normal` replaces the direction between the points if that is not defined.
+pub(super) fn surface_points(
+    bodies: &TwoBodies,
+    cores: [DVec3; 2],
+    distance: f64,
+    normal: Option<DVec3>,
+) -> [DVec3; 2] {
+    let between = cores[1] - cores[0];
+    let normal = between.try_normalize().or(normal).unwrap_or(DVec3::ZERO);
+    if distance == 0.0 {
+        [common_point(bodies, cores[0], between.length(), normal); 2]
+    } else {
+        bodies.surface_points(cores, normal)
     }
 }
 
@@ -80,6 +91,11 @@ pub(super) fn depth(bodies: &TwoBodies, enough: f64) -> Result<Depth, QueryError
         let near = found.near_points(&difference);
         let lower = core_distance(bodies, &near).map_or(0.0, |apart| (least - apart).next_down());
         let lower = if upper == 0.0 { 0.0 } else { lower.max(0.0) };
+        let tolerance = MAX_BOUND_GAP * difference.noise.point_error() + plane.excess;
+        if lower <= enough && upper - lower > tolerance + 8.0 * f64::EPSILON * most {
+            let reason = Stalled::Distance { lower, upper, tolerance };
+            return Err(QueryError::NotConverged { reason });
+        }
         let near = (lower > 0.0).then(|| near_points(bodies, near));
         return Ok(Depth { lower, upper, direction, enclosure: Enclosure::default(), near, steps });
     }

@@ -77,9 +77,12 @@ fn do_pairs_surround_origin(bodies: &TwoBodies, points: &NearPoints) -> bool {
 /// Returns an error if more is claimed, or if the direction does not prove the upper bound.
 pub(super) fn verify_depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, CertificateError> {
     check_unit_normal(depth.direction)?;
-    let [square, _] = height_bounds::dot_bounds(depth.direction, depth.direction);
+    let [least_square, most_square] = height_bounds::dot_bounds(depth.direction, depth.direction);
     let reach = -bodies.distance_along(-depth.direction);
-    let upper = (reach / square.sqrt().next_down()).next_up();
+    // The cores of rounded bodies may be apart: then the larger length gives the larger quotient.
+    let length =
+        if reach < 0.0 { most_square.sqrt().next_up() } else { least_square.sqrt().next_down() };
+    let upper = (reach / length).next_up();
     let [least, most] = bodies.core_gap_bounds(0.0);
     let upper = if most == 0.0 { upper } else { (upper + most).next_up() }.max(0.0);
     if depth.upper.is_nan() || depth.upper < upper {

@@ -294,3 +294,37 @@ fn invalid_radii_are_refused() {
     let twice = sphere(1.0).rounded(0.5).expect("rounded again");
     assert_eq!(twice.radius(), 1.5);
 }
+
+#[test]
+fn depth_of_rounded_bodies_is_verified_with_the_length_of_its_direction() {
+    // The cores are apart, so that a direction longer than 1 would shorten the distance that it proves.
+    for (radii, x, length, upper) in [
+        ([0.974_744_170_612_464_4, 0.974_744_170_612_464_7], 1.949_488_341_224_928_9, 2.0, 0.0),
+        ([0.849_913_577_866_475_3; 2], 1.693_278_552_380_736_5, 4.0, 0.006_548_603_352_213_523),
+    ] {
+        let [p, q] = radii.map(sphere);
+        let pair = Pair::new(p.at(Pose::IDENTITY), q.at(at(x, 0.0, 0.0))).expect("a pair");
+        let honest = pair.depth().expect("an answer");
+        pair.verify(&honest).expect("it holds");
+        let mut forged = honest;
+        forged.direction = DVec3::NEG_X * (1.0 + length * f64::EPSILON);
+        (forged.lower, forged.upper, forged.near) = (0.0, upper, None);
+        assert!(pair.verify(&forged).is_err(), "{radii:?}");
+    }
+}
+
+#[test]
+fn points_of_closer_bodies_are_on_the_round_surfaces() {
+    let (ball, cube) = (sphere(0.5), cuboid(DVec3::NEG_ONE, DVec3::ONE));
+    let points = |z: f64, length: f64| {
+        let pair = Pair::new(ball.at(at(0.0, 0.0, z)), cube.at(Pose::IDENTITY)).expect("a pair");
+        let Within::Closer(near) = pair.within(length).expect("an answer") else {
+            panic!("they are closer")
+        };
+        colltrans_convex::pair::nearest_points_in_world(&pair.bodies, &near)
+    };
+    let [on_ball, on_cube] = points(2.0, 1.0);
+    assert!((on_ball.z - 1.5).abs() < 1e-13 && (on_cube.z - 1.0).abs() < 1e-13);
+    let [common, same] = points(1.25, 0.0);
+    assert!(common == same && common.z >= 0.75 && common.z <= 1.0, "{common}");
+}

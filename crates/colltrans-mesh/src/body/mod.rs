@@ -191,6 +191,7 @@ impl BodyError {
             ) => &[BodyKind::Solid, BodyKind::Hull],
             Self::Convex(_) | Self::NeedsRepair(_) | Self::ShapeName { .. } => &[],
             Self::Solid(SolidError::Open { .. }) => &[BodyKind::Open, BodyKind::Hull],
+            Self::Solid(SolidError::Rounded { .. }) => &[],
             Self::Solid(_) => &[BodyKind::Hull],
         }
     }

@@ -96,11 +96,12 @@ impl<'a> FixedRotations<'a> {
     }
 
     /// Returns the approximate number of casts after which computing the faces pays off. Returns `None` for bodies
-    /// whose faces are not computed: two flat bodies, or more than 16,384 vertex pairs.
+    /// whose faces are not computed: two flat bodies, a rounded one, or more than 16,384 vertex pairs.
     pub fn break_even_casts(moving: &ConvexPolyhedron, fixed: &ConvexPolyhedron) -> Option<usize> {
         let pairs = moving.vertices().len() * fixed.vertices().len();
         let flat = moving.dimension().max(fixed.dimension()) < 3;
-        (pairs <= MAX_VERTEX_PAIRS && !flat).then_some(MIN_CASTS + pairs)
+        let rounded = moving.radius() + fixed.radius() > 0.0;
+        (pairs <= MAX_VERTEX_PAIRS && !flat && !rounded).then_some(MIN_CASTS + pairs)
     }
 
     /// Builds a map for casts along one direction. It takes less than a tenth of the time of the faces.

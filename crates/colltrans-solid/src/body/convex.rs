@@ -22,8 +22,8 @@ impl Solid {
     /// # Errors
     /// Returns [`SolidError::NoArea`] for a point or a segment, and [`SolidError::Rounded`] for a rounded body.
     pub fn from_convex(body: &ConvexPolyhedron) -> Result<Self, SolidError> {
-        check_area(body)?;
         check_is_polyhedron(body)?;
+        check_area(body)?;
         let facets: Vec<Vec<u32>> =
             (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
         Ok(Self::from_mesh(body.vertices(), &facets)?.with_input_numbers(body.input_indices()))
@@ -32,6 +32,7 @@ impl Solid {
 
 impl AsSolid for ConvexPolyhedron {
     fn as_solid(&self) -> Result<&Solid, SolidError> {
+        check_is_polyhedron(self)?;
         check_area(self)?;
         self.as_surface()
     }

@@ -14,7 +14,7 @@ use colltrans_kernel::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 
 impl ConvexPolyhedron {
     /// Returns the body swept by a ball: all points at a distance of at most `radius` from it. A body that is already
-    /// rounded is rounded further, by the sum of the radii.
+    /// rounded is rounded further, by the rounded sum of the radii.
     ///
     /// The vertices, faces and features of the result are those of the core, the body without radius. A point becomes
     /// a sphere, a segment a capsule, a box a rounded box. The mathematical shape is exact: nothing is tessellated.

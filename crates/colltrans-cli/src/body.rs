@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use colltrans::glam::DVec3;
 use colltrans::solid::SolidError;
 use colltrans::{Aabb, BuildError, ConvexPolyhedron};
 use colltrans_mesh::body::{BodyError, BodyKind, BodyOptions, Excess, LoadError, Loaded, Note};

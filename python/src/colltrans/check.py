@@ -926,9 +926,7 @@ def are_points_near(
     return above(length, dot(between, between))
 
 
-def apart(
-    p: Vector, q: Vector, upper: Fraction, report: Report, swept: Fraction = _NO_GAP
-) -> None:
+def apart(p: Vector, q: Vector, upper: Fraction, report: Report, swept: Fraction = _NO_GAP) -> None:
     """Checks the distance of a point of each body as an upper bound, less both radii."""
     between = minus(q, p)
     if upper < 0 or not above(upper + swept, dot(between, between)):

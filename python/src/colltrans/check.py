@@ -588,8 +588,8 @@ def contact(
 ) -> None:
     """Checks both bounds of a certificate between convex bodies.
 
-    Rounded bodies are as near as ``min_gap`` where the hulls of their points are as near as the sum of
-    ``min_gap`` and both radii.
+    Rounded bodies are as near as ``min_gap`` where the hulls of their points are as near as the sum
+    of ``min_gap`` and both radii.
     """
     proof = fields(proof, "normal lower pairs weights upper rounding")
     normal = vector(proof["normal"])
@@ -1004,7 +1004,7 @@ def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
         shares = [number(weight) for weight in listed(near["weights"], 4)]
         enclosed = number(near["distance"]) == 0 and encloses([minus(q, p) for p, q in ends])
         rest = swept - lower
-        if not swept or not (enclosed and rest >= 0 or are_points_near(ends, shares, rest)):
+        if not swept or not ((enclosed and rest >= 0) or are_points_near(ends, shares, rest)):
             raise RefusedError(f"the points do not prove a depth of {float(lower)!r}")
         report.holds.append(f"no translation below {float(lower)!r} separates them")
     elif lower > 0 or any(listed(part) for part in surface.values()):

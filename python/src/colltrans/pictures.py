@@ -320,7 +320,7 @@ Placed: TypeAlias = tuple[Floats, NDArray[np.uint32], NDArray[Any]]
 def placed(body: Solid | ConvexPolyhedron, pose: Pose) -> Placed:
     """Returns the vertices in the world, the triangles, and the visible edges of a placed body."""
     if isinstance(body, ConvexPolyhedron):
-        body = _drawn(body)
+        body = _drawn_body(body)
     vertices = body.vertices @ pose.rotation.T + pose.translation
     if isinstance(body, Solid):
         return vertices, body.triangles, _creases(vertices, body.triangles)
@@ -331,7 +331,7 @@ def placed(body: Solid | ConvexPolyhedron, pose: Pose) -> Placed:
     return vertices, triangles, _creases(vertices, triangles)
 
 
-def _drawn(body: ConvexPolyhedron) -> ConvexPolyhedron:
+def _drawn_body(body: ConvexPolyhedron) -> ConvexPolyhedron:
     """Returns the body, or for a rounded body a polyhedron with vertices on its surface."""
     if body.radius == 0 or len(body.vertices) > _MAX_DRAWN_BALLS:
         return body

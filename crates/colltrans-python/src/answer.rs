@@ -1,7 +1,8 @@
 //! Answers: frozen objects that hold the library's answer and the query.
 //!
 //! Arrays, points, features, the contacts in an answer and its proof are built on access. A *last* contact is
-//! the first contact of the reversed query and holds the reversed query, as in the library.
+//! the first contact of the reversed query, as in the library. The contact of a `Behind` holds the reversed query.
+//! A `LastContact` holds both queries.
 
 use std::fs;
 use std::path::Path;
@@ -62,7 +63,8 @@ macro_rules! answer {
         $crate::frozen::match_args!($class($($name),*));
 
         $crate::frozen::getters!($class, |it| {
-            /// Cast or SolidCast or Pair: The query. A last contact has the reversed query.
+            /// Cast or SolidCast or Pair or MotionCast: The query. The contact of a :class:`Behind` has the
+            /// reversed query.
             query(py): Py<$query> = it.query.clone_ref(py);
         });
 
@@ -109,7 +111,11 @@ macro_rules! answer {
             /// Raises
             /// ------
             /// CaseError
-            ///     The answer is about a union of solids that was shrunk or grown as a whole.
+            ///     The answer is about a union of solids that was shrunk or grown as a whole, or is an
+            ///     :class:`OverlapDepth`.
+            /// CertificateError
+            ///     The answer is a :class:`MotionClearance` of bodies that overlap at the start of the motion, or
+            ///     whose overlaps there are ignored.
             fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
                 let $it = self;
                 <$of as $crate::answer::Answer>::proof(&$again, self.query.bind(py))

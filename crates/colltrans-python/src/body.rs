@@ -14,7 +14,8 @@ use crate::errors::{OrRaise, error};
 use crate::frozen::{Options, Shown, getters, html, show};
 use crate::offset::OffsetReport;
 
-/// A convex polyhedron in its own frame: the convex hull of points.
+/// A convex polyhedron in its own frame: the convex hull of points, or this hull swept by a ball
+/// (:meth:`rounded`).
 ///
 /// The body never changes, and any thread can query it any number of times. Flat polygons, segments and
 /// points are bodies too.
@@ -77,13 +78,15 @@ getters!(ConvexPolyhedron, |it| {
         let face = |f| it.0.face_vertices(f).collect::<Vec<_>>().into_pyarray(py);
         (0..it.0.face_count() as u32).map(face).collect()
     };
-    /// int: 3 for a body with a volume, 2 for a flat polygon, 1 for a segment, 0 for a point.
+    /// int: The dimension of the hull of the vertices, without the radius: 3 for a body with a volume, 2 for a
+    /// flat polygon, 1 for a segment, 0 for a point.
     dimension: u8 = it.0.dimension();
-    /// float: The largest distance of an input point from the body, a length of the order of rounding errors.
+    /// float: An upper bound of the distance of an input point from the body, and of the distance of a vertex
+    /// outside the plane of a face: a length of the order of rounding errors.
     hull_error: f64 = it.0.hull_error();
     /// float: The radius of the ball that sweeps the body (:meth:`rounded`); 0 for a polyhedron.
     radius: f64 = it.0.radius();
-    /// float: The volume, in the cube of the unit of length.
+    /// float: The volume, in the cube of the unit of length. It includes the radius of a rounded body.
     volume: f64 = it.0.volume();
     /// int: Bytes of memory that the body occupies now. The sections for ``solver="cta"`` count once they are
     /// built (:meth:`prepare`).
@@ -208,7 +211,7 @@ impl ConvexPolyhedron {
     /// Raises
     /// ------
     /// BuildError
-    ///     The radius is negative, not finite or out of range.
+    ///     The radius is negative, not finite or out of range, or the center is not finite or out of range.
     ///
     /// Examples
     /// --------
@@ -239,7 +242,7 @@ impl ConvexPolyhedron {
     /// Raises
     /// ------
     /// BuildError
-    ///     The radius is negative, not finite or out of range.
+    ///     The radius is negative, not finite or out of range, or an end is not finite or out of range.
     ///
     /// Examples
     /// --------
@@ -289,7 +292,7 @@ impl ConvexPolyhedron {
         py.detach(|| colltrans::ConvexPolyhedron::from_json(text)).or_raise().map(Self::from)
     }
 
-    /// Returns the body as text: vertices and faces in their order, exact in bits.
+    /// Returns the body as text: vertices and faces in their order, and the radius, exact in bits.
     fn to_json(&self) -> String {
         self.0.to_json()
     }
@@ -316,7 +319,7 @@ impl ConvexPolyhedron {
         Ok(row(py, self.0.face_normal(face)))
     }
 
-    /// float: The depth of the surface of the input mesh below the body.
+    /// float: The largest depth of the surface of the input mesh below the body.
     ///
     /// It is 0 if the mesh is convex up to rounding or the precision of its file, and for a body that was not
     /// built from a mesh. Otherwise the mesh is convex only within the tolerance, and answers refer to the
@@ -362,7 +365,8 @@ impl ConvexPolyhedron {
     /// ------
     /// BuildError
     ///     The body contains no ball of this radius; the message gives a radius that it contains. This
-    ///     includes flat polygons, segments and points. Or the amount is negative or not finite.
+    ///     includes flat polygons, segments and points. Or the body is rounded, or the amount is negative or
+    ///     not finite.
     ///
     /// Examples
     /// --------
@@ -401,8 +405,8 @@ impl ConvexPolyhedron {
     /// Raises
     /// ------
     /// BuildError
-    ///     The body is a segment or a point, which has no faces. Or the amount is negative, not finite, or so
-    ///     large that coordinates leave the exact range.
+    ///     The body is a segment or a point, which has no faces. Or the body is rounded, or the amount is
+    ///     negative, not finite, or so large that coordinates leave the exact range.
     ///
     /// Examples
     /// --------

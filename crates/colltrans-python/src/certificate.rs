@@ -34,7 +34,8 @@ macro_rules! of_a_query {
 
 /// The proof of a contact: lower and upper bound of the collision translation, rounded outwards.
 ///
-/// A supporting plane proves the lower bound, three weighted pairs of vertices prove the upper one.
+/// A supporting plane proves the lower bound, three weighted pairs of vertices prove the upper one. For rounded
+/// bodies these are the vertices of the hulls without radius, and the check adds the radii.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Certificate {
     pub(crate) proof: colltrans::Certificate,
@@ -46,11 +47,12 @@ of_a_query!(Certificate("lower", "upper"));
 getters!(Certificate, |it| {
     /// float: The proven lower bound, in multiples of the direction.
     lower: f64 = it.proof.lower;
-    /// float: The proven upper bound; infinite if the bodies only touch sideways.
+    /// float: The proven upper bound, in multiples of the direction; infinite if the shadows overlap by less
+    /// than rounding errors.
     upper: f64 = it.proof.upper;
     /// float: ``upper - lower``.
     gap: f64 = it.proof.gap();
-    /// float: The part of the gap that rounding alone can cause.
+    /// float: An upper bound of the part of the gap that is due to rounding.
     rounding: f64 = it.proof.rounding;
     /// ndarray of shape (3,): Unit normal of the supporting plane, in the world.
     normal(py): Vector<'py> = row(py, it.proof.normal);
@@ -145,7 +147,7 @@ pub(crate) struct SolidCertificate(pub(crate) colltrans::solid::SolidCertificate
 pickled!(SolidCertificate);
 
 getters!(SolidCertificate, |it| {
-    /// float: The tolerance by which the bodies were shrunk.
+    /// float: The tolerance, a length. Both bodies were shrunk by half of it.
     tolerance: f64 = it.0.tolerance;
     /// float: The proven lower bound of the shrunk bodies' distance, in multiples of the direction.
     lower: f64 = it.0.lower;

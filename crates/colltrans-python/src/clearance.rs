@@ -24,7 +24,8 @@ answer!(Blocked("distance", "contact") of Clearance, Cast, |it| {
 });
 
 getters!(Blocked, |it| {
-    /// float: The free travel in multiples of the direction, rounded down.
+    /// float: The free travel in multiples of the direction: the lower bound of the contact, or 0 if that is
+    /// negative.
     distance: f64 = it.distance;
     /// Contact: The contact that stops the body.
     contact(py): Contact = Contact { contact: it.contact, query: it.query(py) };
@@ -83,7 +84,7 @@ impl Behind {
     }
 }
 
-/// The bodies overlap at the start by more than rounding error.
+/// The bodies overlap at the start by more than rounding error, or are closer than the minimum gap.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Overlapping {
     ends: OverlapAhead,
@@ -142,7 +143,8 @@ pub(crate) struct Intersection {
 answer!(Intersection("meets") of colltrans::Intersection, Cast, |it| it.found);
 
 getters!(Intersection, |it| {
-    /// bool: Whether the bodies have a common point, up to rounding error.
+    /// bool: Whether the bodies have a common point, up to rounding error. With a minimum gap: whether their
+    /// distance is at most the gap.
     meets: bool = it.found.meets;
     /// ndarray of shape (3,): The direction between the centres, along which a cast decided the answer.
     direction(py): Vector<'py> = row(py, it.found.evidence.direction);

@@ -106,16 +106,16 @@ getters!(FreeDirections, |it| {
     undecided_share: f64 = it.record.undecided_share.unwrap_or_default();
     /// float: The tolerance that was used, a length. Each body is shrunk by half of it.
     tolerance: f64 = it.proof.tolerance;
-    /// list of dict: Connected regions, the largest first: ``share``, ``center``, ``corners`` and the convex
-    /// ``pieces`` that form the region.
+    /// list of dict: Connected regions, the largest first: ``share``, ``center``, the ``margin`` (the angle between
+    /// the center and the boundary, in radians), ``corners`` and the convex ``pieces`` that form the region.
     regions(py): PyResult<Bound<'py, PyAny>> = plain(py, &it.record.regions);
     /// list of dict: Arcs of free directions that border no region, exactly. Each arc runs counterclockwise
-    /// around the ``normal`` of its ``plane``, from the first of its ``ends`` (points; None for a whole
-    /// circle) to the second, through the directions ``along``.
+    /// around the ``normal`` of its ``plane``, from the first of its ``ends`` (points) to the second, through the
+    /// directions ``along``. A whole circle has no ``ends``.
     arcs(py): PyResult<Bound<'py, PyAny>> = plain(py, &it.record.arcs);
     /// list of dict: Isolated free directions: the ``direction``, rounded, and two ``planes``. Each plane has
-    /// its ``normal`` and its origin ``of``: two ``triangles``, and three ``vertices`` that span it. The
-    /// exact direction is the vector product of the normals.
+    /// its ``normal`` and its origin ``of``: two ``triangles``, and three ``vertices`` that span it. A plane at the
+    /// boundary of undecided directions has no ``of``. The exact direction is the vector product of the normals.
     points(py): PyResult<Bound<'py, PyAny>> = plain(py, &it.record.points);
 });
 
@@ -153,7 +153,7 @@ impl FreeDirections {
     /// Parameters
     /// ----------
     /// number : int
-    ///     An index into :attr:`points`.
+    ///     An index into :attr:`points`; IndexError if it is out of range.
     /// directions : array_like of shape (N, 3)
     ///     Of any length.
     ///
@@ -172,7 +172,7 @@ impl FreeDirections {
     /// Parameters
     /// ----------
     /// number : int
-    ///     An index into :attr:`arcs`.
+    ///     An index into :attr:`arcs`; IndexError if it is out of range.
     /// directions : array_like of shape (N, 3)
     ///     Of any length.
     ///
@@ -258,8 +258,8 @@ impl FreeDirections {
 /// depth : int
 ///     The maximum number of times that the sides of a cube of directions are halved; at most 50.
 /// looks : int
-///     The maximum number of pairs of boxes that are visited. Directions that are not decided by then stay
-///     undecided.
+///     A limit of the work, in visited pairs of boxes; the search can exceed it slightly. Directions that are not
+///     decided by then stay undecided.
 ///
 /// Returns
 /// -------
@@ -269,6 +269,10 @@ impl FreeDirections {
 /// ------
 /// QueryError
 ///     A body is open, or the bodies overlap at their poses.
+/// BuildError
+///     A body is a point, a segment or rounded.
+/// InputError
+///     ``depth`` exceeds 50.
 ///
 /// Examples
 /// --------

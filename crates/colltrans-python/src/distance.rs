@@ -53,10 +53,10 @@ getters!(Distance, |it| {
     /// ndarray of shape (3,): The point of the fixed body that is nearest to the moving one, in the world.
     on_fixed(py): Vector<'py> = row(py, either!(it.found, found => found.on_fixed));
     /// ndarray of shape (3,) or None: Unit normal in the world, from the moving body to the fixed one; None
-    /// if they meet.
+    /// if ``lower`` is 0.
     normal(py): Option<Vector<'py>> =
         either!(it.found, found => found.normal).map(|normal| row(py, normal));
-    /// Features or None: The nearest feature of each body; None if they meet.
+    /// Features or None: The nearest feature of each body; None if ``lower`` is 0.
     features: PyResult<Option<Features>> = {
         let query = it.query.get();
         let features = either!(it.found, found => found.features);
@@ -101,7 +101,8 @@ pub(crate) struct Depth {
 answer!(Depth("lower", "upper", "direction") of PairAnswer, Pair, |it| PairAnswer::Depth(it.depth.clone()));
 
 getters!(Depth, |it| {
-    /// float: After any shorter translation the bodies overlap; 0 if they are apart, touch, or are flat.
+    /// float: After any shorter translation the bodies overlap; 0 if they are apart or touch, or if both are
+    /// polyhedra in one plane.
     lower: f64 = it.depth.lower;
     /// float: After a translation of this length along ``direction`` they do not overlap; 0 if they are
     /// apart.
@@ -148,8 +149,9 @@ answer!(OverlapDepth("meets", "least_tolerance") of PairAnswer, Pair, |it| PairA
 getters!(OverlapDepth, |it| {
     /// bool: Whether the solids have a common point, decided exactly.
     meets: bool = it.depth.meets;
-    /// float or None: The smallest tolerance at which the solids no longer overlap. It is 0 if they do not
-    /// overlap, and None if no tolerance separates them.
+    /// float or None: The smallest tolerance at which the solids no longer overlap, rounded up. It is 0 if they
+    /// do not overlap. It is None if a solid vanishes before the overlap ends, or if overlapping solids have open
+    /// shells.
     least_tolerance: Option<f64> = it.depth.least_tolerance;
 });
 
@@ -181,8 +183,8 @@ impl Within {
 getters!(Within, |it| {
     /// float: The length that is compared with the distance.
     length: f64 = it.found.length;
-    /// bool or None: Whether the bodies are closer; None if the length is between the bounds of the distance,
-    /// which differ by a few rounding errors.
+    /// bool or None: Whether the distance is at most the length; None if the length is between the bounds of
+    /// the distance, which differ by a few rounding errors.
     closer: Option<bool> = {
         use colltrans::Within::{Closer, Farther, Undecided};
         either!(it.found.found, found => match found.0 {

@@ -190,8 +190,8 @@ impl Motion {
         self.0.pose_at(time).or_raise().map(Pose)
     }
 
-    /// Formats a call that builds the motion again, up to rounding: its kind, axis, angle and the pose at
-    /// time 0.
+    /// Formats the motion. A motion of one piece becomes a call that builds it again up to rounding, with its kind,
+    /// axis, angle and the pose at time 0. Several screws become their number and this pose.
     fn __repr__(&self) -> String {
         let start = Pose(self.0.start_pose()).text();
         let [piece] = self.0.pieces() else {
@@ -506,9 +506,14 @@ impl MotionCast {
         Ok(MotionClearance { found: Self::cleared(slf)?, query: slf.clone().unbind() })
     }
 
-    /// Returns the query of convex bodies as text: bodies, motions and the gap, exact in bits.
+    /// Returns the query of convex bodies as text: bodies, motions, and the gap or the tolerance, exact in bits.
     ///
     /// The command ``colltrans replay`` reads this text too.
+    ///
+    /// Raises
+    /// ------
+    /// CaseError
+    ///     The bodies are solids.
     fn to_json(&self) -> PyResult<String> {
         match self.asked()? {
             Of::Convex(cast) => Ok(MotionCase::from_cast(&cast).to_json()),
@@ -642,7 +647,8 @@ getters!(FirstContact, |it| {
     /// ndarray of shape (3,) or None: The nearest point of the fixed body at that time, in the world.
     point(py): Option<Vector<'py>> =
         contact!(it.found, contact => contact.points)?.map(|points| row(py, points[1]));
-    /// ndarray of shape (3,) or None: Unit normal in the world, from the moving body to the fixed one.
+    /// ndarray of shape (3,) or None: Unit normal in the world at that time, from the moving body to the fixed
+    /// one; None without a contact, or if no plane between the bodies was found.
     normal(py): Option<Vector<'py>> =
         contact!(it.found, contact => contact.normal)?.map(|normal| row(py, normal));
     /// Features or None: The nearest feature of each body.
@@ -661,7 +667,7 @@ getters!(FirstContact, |it| {
             }
         }
     };
-    /// int: Number of times at which the search sampled the distance.
+    /// int: Number of distance samples and contact tests of the search.
     looks: u32 = match &it.found {
         Of::Convex(found) => found.steps().looks,
         Of::Solids(found) => found.steps().looks,
@@ -800,14 +806,17 @@ getters!(MotionClearance, |it| {
         Of::Solids(found) => found.time(),
     };
     /// tuple of (float, float or None) or None: Bounds of the time at which the stopping features meet in
-    /// their nominal position. The second one is None if it is not proven.
+    /// their nominal position; None if nothing stops the body. The first one is extrapolated, without a proof, if
+    /// the nominal bodies are apart at no sampled time or no contact of them is found. At the second one the
+    /// nominal bodies meet, or the bodies after the tolerance is applied. It is None if neither is proven.
     bounds: Option<(f64, Option<f64>)> = it.stop().map(|stop| bounds(stop.place));
-    /// tuple of (float, float or None) or None: Bounds of the time at which the bodies meet after the
-    /// tolerance is applied.
+    /// tuple of (float, float or None) or None: Proven bounds of the time at which the bodies meet after the
+    /// tolerance is applied. The second one is None if no contact is proven.
     shrunk: Option<(f64, Option<f64>)> = it.stop().map(|stop| bounds(stop.shrunk));
     /// float or None: The tolerance that was used, a length; None if nothing stops the body.
     tolerance: Option<f64> = it.stop().map(|stop| stop.tolerance);
-    /// float or None: The smallest tolerance at which the bodies do not overlap at the start of the motion.
+    /// float or None: The smallest tolerance at which the bodies do not overlap at the start of the motion, rounded
+    /// up; None if there is no such tolerance, or unless the outcome is ``"overlapping"``.
     least_tolerance: Option<f64> = match &it.found {
         Of::Convex(motion::MotionClearance::Overlapping(found))
         | Of::Solids(motion::MotionClearance::Overlapping(found)) => found.least_tolerance,
@@ -817,7 +826,7 @@ getters!(MotionClearance, |it| {
 
 #[pymethods]
 impl MotionClearance {
-    /// Checks the proof of the bounds ``shrunk`` with the bodies alone.
+    /// Checks with the bodies alone the proof of the bounds ``shrunk``, or that the body can move to the end.
     ///
     /// Between solids the query runs again to build the proof.
     ///

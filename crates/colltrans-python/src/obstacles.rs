@@ -96,8 +96,8 @@ impl Obstacles {
     }
 }
 
-/// Computes how far a body can move with a minimum gap. Obstacles beyond the translation `before` are
-/// ignored.
+/// Computes how far a body can move with a minimum gap, at most to the translation `before`. An obstacle stops the
+/// body only if it is certainly met before this translation.
 fn clearance_with_min_gap(
     among: &SceneQuery<'_>,
     direction: DVec3,
@@ -205,7 +205,14 @@ impl Obstacles {
         py.detach(set).map_err(|_| unknown_obstacle_error(obstacle))
     }
 
-    /// Moves many obstacles in one pass: all of them, or none if a number is unknown (KeyError).
+    /// Moves many obstacles in one pass: all of them, or none if a number is unknown.
+    ///
+    /// Raises
+    /// ------
+    /// KeyError
+    ///     There is no such obstacle.
+    /// InputError
+    ///     The numbers of obstacles and poses differ.
     fn set_poses(
         &self,
         py: Python<'_>,
@@ -273,7 +280,7 @@ impl Obstacles {
     /// Returns
     /// -------
     /// NearestObstacle or None
-    ///     None if there are no obstacles.
+    ///     None if there are no obstacles, or all are ignored.
     ///
     /// Raises
     /// ------
@@ -307,6 +314,11 @@ impl Obstacles {
     /// NearbyObstacles
     ///     The closer obstacles, and those that rounding cannot decide, each in the order in which they were
     ///     added. It unpacks into these two lists.
+    ///
+    /// Raises
+    /// ------
+    /// QueryError
+    ///     The length is negative or not a number.
     #[pyo3(signature = (body, length, pose=None, *, ignore=HashSet::new()),
         text_signature = "($self, body, length, pose=None, *, ignore=())")]
     fn within(
@@ -331,13 +343,19 @@ impl Obstacles {
     /// direction : array_like of shape (3,)
     ///     A vector of any length. Translations are multiples of it.
     /// before : float, optional
-    ///     Obstacles that are not met before this translation are ignored.
+    ///     The end of the query, in multiples of the direction. The travel is at most this translation. An
+    ///     obstacle that is not certainly met before it does not stop the body, but still bounds the travel.
     /// min_gap : float
     ///     A minimum gap, a length. The body stops when its distance from an obstacle falls to it.
     ///
     /// Returns
     /// -------
     /// ObstacleClearance
+    ///
+    /// Raises
+    /// ------
+    /// QueryError
+    ///     The direction is zero or out of range, or ``before`` or ``min_gap`` is negative.
     #[pyo3(signature = (body, direction, pose=None, *, before=None, min_gap=0.0,
         ignore=HashSet::new()), text_signature = "($self, body, direction, pose=None, *, \
         before=None, min_gap=0.0, ignore=())")]
@@ -422,8 +440,8 @@ impl Obstacles {
     /// -------
     /// dict of ndarray
     ///     Columns ``outcome`` (0 is blocked, 1 free, 2 overlapping), ``obstacle`` (-1 if nothing stops the
-    ///     body), ``distance`` (NaN for an overlap) and ``upper``, an upper bound of the translation at which the
-    ///     body is stopped (infinite if nothing stops it, NaN for an overlap).
+    ///     body), ``distance`` (at most ``before``; NaN for an overlap) and ``upper``, an upper bound of the
+    ///     translation at which the body is stopped (infinite if nothing stops it, NaN for an overlap).
     #[pyo3(signature = (body, directions, poses, *, before=None, min_gap=0.0,
         ignore=HashSet::new(), threads=None), text_signature = "($self, body, directions, poses, \
         *, before=None, min_gap=0.0, ignore=(), threads=None)")]

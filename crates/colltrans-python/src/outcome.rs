@@ -46,7 +46,7 @@ getters!(Contact, |it| {
     /// Pose: The pose of the moving body just before this contact; rounding never moves it beyond.
     pose_before: PyResult<Pose> =
         it.query.get().with(|cast| it.contact.pose_before(cast))?.or_raise().map(Pose);
-    /// str: The solver that found the contact.
+    /// str: The solver of the query, with ``auto`` replaced by its choice.
     solver: &'static str = it.contact.solver.name();
     /// Steps: Number of steps of the search.
     steps: Steps = Steps(it.contact.steps);
@@ -115,7 +115,7 @@ getters!(Separated, |it| {
         Separation { proof: it.separated.certificate, query: it.query.clone_ref(py) };
     /// float: The free travel of the moving body: infinite.
     distance: f64 = f64::INFINITY;
-    /// str: The solver that found the separation.
+    /// str: The solver of the query, with ``auto`` replaced by its choice.
     solver: &'static str = it.separated.solver.name();
     /// Steps: Number of steps of the search.
     steps: Steps = Steps(it.separated.steps);

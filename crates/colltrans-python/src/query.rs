@@ -109,8 +109,8 @@ impl Cast {
         question: impl FnOnce(&colltrans::Cast<'a>) -> Result<T, QueryError> + Send,
     ) -> PyResult<T> {
         let work = || self.cast().and_then(|cast| question(&cast));
-        // All other queries take about a microsecond for bodies of any size; waiting for the lock would take
-        // longer.
+        // All other queries of polyhedra take about a microsecond for bodies of any size; waiting for the lock
+        // would take longer.
         let options = &self.options;
         let rounded = self.radii_sum() != 0.0;
         let is_long =

@@ -137,14 +137,17 @@ impl SolidCast {
         Self::ask(slf, move |cast| cast.verify(&proof.get().0))?.or_raise()
     }
 
-    /// Checks whether the nominal bodies, as closed sets, have a common point. The minimum gap is ignored.
+    /// Checks whether the nominal bodies, as closed sets, have a common point, exactly.
+    ///
+    /// With a minimum gap the answer is also True if the distance of two facets is certainly at most the gap.
     fn intersects(slf: &Bound<'_, Self>) -> PyResult<bool> {
         Ok(Self::ask(slf, |cast| cast.intersects())?.or_raise()?.meets)
     }
 
     /// Computes the smallest tolerance at which the bodies do not overlap.
     ///
-    /// It is 0 if they do not overlap, and None if no tolerance up to their size separates them.
+    /// The result is rounded up. It is 0 if the nominal bodies do not overlap. It is None if a body vanishes before
+    /// the overlap ends, or if overlapping bodies have open shells.
     fn least_tolerance(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
         Self::ask(slf, |cast| cast.least_tolerance())
     }
@@ -174,14 +177,16 @@ impl SolidCast {
         Ok(found.map(|overlap| SolidOverlapping { overlap, query: slf.clone().unbind() }))
     }
 
-    /// Estimates the last translation at which the nominal bodies meet, in multiples of the direction; None
-    /// if no facets face each other. Proven bounds are in ``exit_bounds``.
+    /// Estimates the last translation at which the nominal bodies meet, in multiples of the direction.
+    ///
+    /// It is 0 if the last contact is behind, and None if the bodies never meet along the direction. With a minimum
+    /// gap, bodies within the gap count as meeting. Proven bounds are in ``exit_bounds``.
     fn exit(slf: &Bound<'_, Self>) -> PyResult<Option<f64>> {
         Self::ask(slf, |cast| cast.exit().map(|exit| exit.value))
     }
 
-    /// Computes proven bounds of ``exit``: the bodies do not meet beyond the second one. None if no facets
-    /// face each other.
+    /// Computes proven bounds of ``exit``: the bodies do not meet beyond the second one. None if the bodies never
+    /// meet along the direction.
     fn exit_bounds(slf: &Bound<'_, Self>) -> PyResult<Option<(f64, f64)>> {
         Self::ask(slf, |cast| cast.exit().map(|exit| exit.bounds().into()))
     }

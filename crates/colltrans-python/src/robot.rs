@@ -225,6 +225,8 @@ impl Robot {
     /// ------
     /// AssemblyError
     ///     A file is invalid; the message has the reason and the place.
+    /// InputError
+    ///     The SRDF file names a link that the robot does not have.
     #[staticmethod]
     #[pyo3(signature = (path, *, srdf=None, packages=Vec::new(), skip_missing=false,
         allow_outside=false, hulls=Vec::new()))]
@@ -284,7 +286,7 @@ impl Robot {
     /// Raises
     /// ------
     /// InputError
-    ///     The rows do not fit the joints, or a name is unknown.
+    ///     The rows do not fit the joints, the times do not increase, or a name is unknown.
     /// QueryError
     ///     The library rejects the query.
     #[pyo3(signature = (path, scene=None, *, ignore=Vec::new(), min_gap=0.0, joints=BTreeMap::new(),
@@ -481,7 +483,8 @@ getters!(PathAnswer, |it| {
     looks: u32 = it.record.looks;
     /// int: Number of planes in the proof.
     planes: usize = it.record.planes;
-    /// list of str: Pairs that were excluded by default, and values beyond the limits of a joint.
+    /// list of str: Pairs that were excluded by default, exclusions without an effect, values beyond the limits
+    /// of a joint, and fields of a path file that are not used.
     notes: Vec<String> = it.notes.clone();
 });
 

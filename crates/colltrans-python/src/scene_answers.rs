@@ -89,7 +89,7 @@ getters!(NearestObstacle, |it| {
     /// ndarray of shape (3,): The point of the obstacle that is nearest to the moving body.
     on_fixed(py): Vector<'py> = row(py, it.found.distance.on_fixed());
     /// ndarray of shape (3,) or None: Unit vector in the world, from the moving body to the obstacle; None if
-    /// they meet.
+    /// they meet or are closer than rounding errors.
     normal(py): Option<Vector<'py>> = it.found.distance.normal().map(|normal| row(py, normal));
 });
 
@@ -101,7 +101,7 @@ impl NearestObstacle {
     }
 }
 
-/// The obstacles that are closer than a length. It unpacks into both lists.
+/// The obstacles that are at most a length away. It unpacks into both lists.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct NearbyObstacles {
     pub(crate) found: Nearby,
@@ -201,12 +201,14 @@ getters!(ObstacleClearance, |it| {
     /// int or None: The obstacle that stops the body, or that overlaps it.
     obstacle: Option<u64> = it.found.stop.map(|(id, _)| id.0);
     /// float or None: How far the body can move past all obstacles, rounded down, in multiples of the
-    /// direction; None if it overlaps one at the start.
+    /// direction. If nothing stops it, this is infinite, or at most the end of the query, ``before``. None if the
+    /// body overlaps an obstacle at the start.
     distance: Option<f64> = it.found.safe_translation();
     /// float: An upper bound of the translation at which the body is stopped; infinite if nothing stops it,
     /// NaN if it overlaps an obstacle.
     upper: f64 = upper_of(&it.found);
-    /// ndarray of shape (3,) or None: Unit normal of the contact, from the moving body to the obstacle.
+    /// ndarray of shape (3,) or None: Unit normal of the contact, from the moving body to the obstacle; None
+    /// unless the body is blocked.
     normal(py): Option<Vector<'py>> = match it.found.stop {
         Some((_, ByKind::Convex(Clearance::Blocked { contact, .. }))) => {
             Some(row(py, contact.normal))

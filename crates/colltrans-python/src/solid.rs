@@ -373,7 +373,7 @@ impl Solid {
     /// Raises
     /// ------
     /// BuildError
-    ///     The amount is negative or not finite, or nothing remains of the body.
+    ///     The amount is negative, not finite, or so large that coordinates leave the exact range.
     ///
     /// Examples
     /// --------

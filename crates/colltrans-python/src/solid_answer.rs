@@ -123,7 +123,7 @@ impl SolidFree {
     }
 }
 
-/// Two solids overlap at the start by more than the tolerance.
+/// Two solids overlap at the start by more than the tolerance, or are closer than the minimum gap.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidOverlapping {
     pub(crate) overlap: SolidOverlap,
@@ -135,12 +135,12 @@ answer!(SolidOverlapping("least_tolerance") of SolidClearance, SolidCast, |it| S
 getters!(SolidOverlapping, |it| {
     /// None: An overlap has no clearance.
     distance: Option<f64> = None;
-    /// float or None: The smallest tolerance at which the solids would not overlap, a length; None if there
-    /// is no such tolerance, as for open surfaces.
+    /// float or None: The smallest tolerance at which the solids would not overlap, a length, rounded up; None if
+    /// there is no such tolerance, as for open surfaces.
     least_tolerance: Option<f64> = it.overlap.least_tolerance;
     /// tuple of (int or None, int or None): A place where the bodies, shrunk by half the tolerance each,
-    /// overlap: two faces of the input that cross, one of each body. If one entry is None, the shell with the
-    /// other face is inside that body.
+    /// overlap: two faces of the input that cross or are closer than the minimum gap, one of each body. If one
+    /// entry is None, the shell with the other face is inside that body.
     place: PyResult<(Option<u32>, Option<u32>)> = {
         let [moving, fixed] = &it.query.get().bodies;
         let face = |body: &Piece, at: u32| -> PyResult<_> {

@@ -41,6 +41,11 @@ self_cell!(
 ///     The region for "cta": the half-side of a square of section levels as a length, or a choice from the
 ///     change of the query.
 ///
+/// Raises
+/// ------
+/// QueryError
+///     The region is an unknown name, negative or not a number.
+///
 /// Examples
 /// --------
 /// >>> from colltrans import ConvexPolyhedron, Tracker

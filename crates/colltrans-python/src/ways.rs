@@ -61,7 +61,7 @@ impl WaysOut {
     }
 
     /// Returns the answer as plain Python: ``outcome``, ``legs``, ``tolerance``, ``cells`` and ``searched``.
-    /// Fields that do not apply are left out.
+    /// Fields that do not apply are left out. The infinite travel of the last move is None.
     ///
     /// Returns
     /// -------
@@ -96,7 +96,7 @@ impl WaysOut {
 ///     Directions to try, with their opposites. The default is the normals of large faces, and directions
 ///     perpendicular to two of them.
 /// looks : int
-///     The maximum number of pairs of boxes that are visited.
+///     A limit of the visited pairs of boxes; the search can exceed it slightly.
 /// cells : int
 ///     The maximum number of cells of a proof that no path exists; 0 for no such proof.
 ///
@@ -107,7 +107,11 @@ impl WaysOut {
 /// Raises
 /// ------
 /// QueryError
-///     A body is open, or the bodies overlap at their poses.
+///     A body is open, the bodies overlap at their poses, or a direction is zero or not finite.
+/// BuildError
+///     A body is a point, a segment or rounded.
+/// InputError
+///     ``legs`` is 0.
 ///
 /// Examples
 /// --------

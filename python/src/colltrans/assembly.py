@@ -152,7 +152,8 @@ class Step:
         The moves in order, of the group or of other parts that make room. In the last one the group
         leaves, along `direction` for `travel`. Usually this is the only move.
     back : list of Move
-        The moves by which parts that made room return to their places.
+        The moves by which parts that made room return to their places, and by which parts of the
+        group return that left displaced against each other.
     within : int or None
         For a step that takes a group apart: the index of the step that removed the group.
     after : list of int
@@ -393,8 +394,9 @@ class RemovalMap:
         The index of the blocking part; -1 if none blocks.
     regions : list of tuple of (float, tuple of float)
         Connected sets of free directions, largest first: solid angle in steradians, and the
-        direction farthest from the border. They are exact if parts are closed and no contact is
-        tolerated, otherwise sampled.
+        direction farthest from the border. They are exact if all parts are closed, the group
+        overlaps no other part, and no pair of them is ignored or has a fit of its own. Otherwise
+        they are sampled.
     isolated : ndarray of shape (K, 3)
         Free directions outside all regions, or in a region smaller than a disc of ``border``.
     """

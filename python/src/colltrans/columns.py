@@ -338,11 +338,12 @@ class Columns(Table[Answer_co]):
     point : ndarray of shape (N, 3)
         Contact points, in the world.
     translation_lower, translation_upper : ndarray of shape (N,)
-        Proven bounds of the translation, in multiples of the direction; infinite without a bound.
+        Proven bounds of the translation, in multiples of the direction. The upper one is infinite
+        if the shadows overlap by less than rounding errors.
     translation : ndarray of shape (N,)
         Translation of the first contact, in multiples of the direction.
     rounding : ndarray of shape (N,)
-        The part of the difference of these bounds that rounding alone can cause.
+        An upper bound of the part of the difference of both bounds that is due to rounding.
     margin : ndarray of shape (N,)
         A lower bound of the distance of the shadows of separated bodies, a length.
     overlap : ndarray of shape (N,)

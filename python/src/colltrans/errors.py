@@ -43,7 +43,7 @@ class CertificateError(ColltransError, ValueError):
 
 
 class CaseError(ColltransError, ValueError):
-    """A saved query or body cannot be read."""
+    """A saved query or body cannot be read, or a query or an answer cannot be saved."""
 
 
 class MeshError(ColltransError, ValueError):

@@ -81,7 +81,11 @@ def _bodies(query: Any) -> list[_Shape]:
 
 
 def _moved(thing: MotionCast | MotionClearance | FirstContact) -> tuple[list[_Shape], list[Floats]]:
-    """Returns the bodies at the start, and the moving one as a ghost at the contact or the end."""
+    """Returns the moving body at the start, the fixed body, and a ghost of the moving body.
+
+    The fixed body and the ghost are at the time of the contact, or else at the end of the motion.
+    A query has no contact yet, so it shows the end.
+    """
     query = thing if isinstance(thing, MotionCast) else thing.query
     at = 1.0
     if isinstance(thing, FirstContact) and thing.lower is not None:

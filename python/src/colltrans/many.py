@@ -68,7 +68,8 @@ def cast_many(
         A minimum gap, a length. The result is then the translation at which the distance of the
         bodies first falls to it.
     solver : {"auto", "cta", "portal"} or Cta
-        The search algorithm. Answers are the same.
+        The search algorithm. Answers are equally accurate; the normal and the features may differ
+        if vertices or parallel edges meet.
     features : bool
         Whether to add the columns ``moving_feature`` and ``fixed_feature`` of the features in
         contact.
@@ -96,13 +97,14 @@ def cast_many(
     In such groups the outcome of a row and the kind of its proof stay the same, but a translation,
     a bound or a contact point may differ in its last digits. Between separated bodies the normal is
     another separating one, so that ``margin`` may differ by any factor: it is a proven distance
-    along that normal, not the largest one. The answers depend on the set of rows, not on their
-    order or on ``threads``.
+    along that normal, not the largest one. The answers depend on the set of rows, not on
+    ``threads``. They do not depend on the order of the rows either, unless more than 256 groups are
+    large enough.
 
-    Rows of flat bodies, of bodies with more than 16,384 pairs of vertices, with ``solver="cta"`` or
-    with ``min_gap`` always have the bits of :func:`cast`. ``columns[i]`` has them too, because
-    it answers row ``i`` again by itself. Its margin, bounds and point may differ from those of the
-    columns.
+    Rows of two flat bodies, of a rounded body, of bodies with more than 16,384 pairs of vertices,
+    with ``solver="cta"`` or with ``min_gap`` always have the bits of :func:`cast`. ``columns[i]``
+    has them too, because it answers row ``i`` again by itself. Its margin, bounds and point may
+    differ from those of the columns.
 
     Examples
     --------

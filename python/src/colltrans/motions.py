@@ -63,7 +63,8 @@ class MotionClearanceColumns(TimeColumns[MotionClearance]):
     ----------
     lower, upper : ndarray of shape (N,)
         The body can move until the first time. At the second time the stopping features meet in
-        their nominal position.
+        their nominal position, or after the tolerance is applied; NaN if neither is proven. Both
+        are NaN unless the body is blocked.
     least_tolerance : ndarray of shape (N,)
         The smallest tolerance without an overlap, for bodies that overlap at the start of the
         motion.

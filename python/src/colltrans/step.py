@@ -62,7 +62,7 @@ class StepError(Exception):
 
 @dataclass
 class Measured:
-    """The chord error of one mesh in metres, and the number of faces for each measure."""
+    """The chord error of one shape in millimetres, and the number of faces for each measure."""
 
     chord_error: float = 0.0
     exact: int = 0

@@ -507,6 +507,8 @@ impl ConvexPolyhedron {
 ///     The file cannot be read. The message names the place.
 /// BuildError
 ///     The mesh is not convex or not closed; ``hull=True`` takes its hull.
+/// InputError
+///     ``scale`` is not finite and positive.
 #[pyfunction]
 #[pyo3(signature = (path, *, hull=false, scale=1.0, convex_tolerance=None, merge_tolerance=None))]
 pub(crate) fn read(

@@ -156,7 +156,7 @@ impl Motion {
     /// Parameters
     /// ----------
     /// poses : sequence
-    ///     Poses, each an array_like or a :class:`Pose`.
+    ///     At least one pose, each an array_like or a :class:`Pose`.
     #[staticmethod]
     fn through(poses: &Bound<'_, PyAny>) -> PyResult<Self> {
         let each = poses.try_iter()?.map(|item| pose(Some(&item?), "poses"));

@@ -394,6 +394,11 @@ impl Obstacles {
     /// dict of ndarray
     ///     Columns ``obstacle`` (-1 without obstacles), ``lower`` and ``upper`` (infinite without obstacles),
     ///     ``on_moving`` and ``on_fixed`` (NaN without obstacles).
+    ///
+    /// Raises
+    /// ------
+    /// QueryError
+    ///     A row has no answer; the message has the first such row and the reason.
     #[pyo3(signature = (body, poses, *, ignore=HashSet::new(), threads=None),
         text_signature = "($self, body, poses, *, ignore=(), threads=None)")]
     fn nearest_many<'py>(

@@ -467,6 +467,8 @@ question_of_any! {
 /// ------
 /// PoseError, InputError, BuildError
 ///     An argument is rejected.
+/// NotConvergedError
+///     The search ended without an answer.
 ///
 /// Examples
 /// --------

@@ -506,12 +506,17 @@ impl PathAnswer {
 
     /// Returns the proof with everything that it refers to, as text.
     ///
-    /// The text is a file of ``--save-proof`` of ``colltrans path``, which ``colltrans verify`` checks. The
-    /// query runs again to build it.
+    /// The text is a file of ``--save-proof`` of ``colltrans path``, which ``colltrans verify`` and ``python -m
+    /// colltrans.check`` check. The query runs again to build it.
     ///
     /// Returns
     /// -------
     /// str
+    ///
+    /// Raises
+    /// ------
+    /// CaseError
+    ///     The library cannot build the proof file; the message has the reason.
     fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
         Ok(self.outcome_and_proof(py)?.1.to_json())
     }

@@ -335,6 +335,8 @@ impl Solid {
     ///     The file cannot be read. The message names the place.
     /// BuildError
     ///     The mesh is open, or does not form a surface.
+    /// InputError
+    ///     ``scale`` is not finite and positive.
     #[staticmethod]
     #[pyo3(signature = (path, *, open=false, scale=1.0, merge_tolerance=None))]
     fn read(

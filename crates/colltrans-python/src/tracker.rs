@@ -38,8 +38,9 @@ self_cell!(
 ///     solver is "cta", which starts as in the paper in the region around the last solution, or unless a
 ///     region is given.
 /// region : "automatic", "everywhere" or float, optional
-///     The region for "cta": the half-side of a square of section levels as a length, or a choice from the
-///     change of the query.
+///     The region of section levels in which "cta" starts: a square with this half-side, a length. With
+///     "automatic" the half-side follows from the change since the last query. With "everywhere" there is no
+///     region.
 ///
 /// Raises
 /// ------

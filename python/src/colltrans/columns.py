@@ -140,6 +140,11 @@ class Table(Generic[Answer_co]):
         name : str
             The name of a column, for example ``"outcome"``.
 
+        Raises
+        ------
+        InputError
+            There is no such column.
+
         Examples
         --------
         >>> import numpy as np
@@ -191,6 +196,11 @@ class Table(Generic[Answer_co]):
 
     def where(self, *outcomes: str) -> NDArray[np.bool_]:
         """Returns a mask of the rows that have one of these outcomes.
+
+        Raises
+        ------
+        InputError
+            A name is not an outcome of these answers.
 
         Examples
         --------

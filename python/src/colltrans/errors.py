@@ -32,7 +32,8 @@ class NotConvergedError(QueryError):
     Attributes
     ----------
     case : str or None
-        The query as a file, for ``Cast.from_json`` and ``colltrans replay``.
+        The query as a file, for ``colltrans replay`` and ``Cast.from_json``, or for a motion
+        ``MotionCast.from_json``. None for a query without a direction, such as a distance.
     """
 
     case: str | None = None

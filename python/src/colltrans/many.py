@@ -260,16 +260,23 @@ def clearance_many(
         See :func:`cast_many`. If one of them is a solid, all bodies are treated as solids.
     direction, moving_pose, fixed_pose, moving_index, fixed_index
         See :func:`cast_many`.
-    graze_tolerance, min_gap, solver, features, threads
+    min_gap, features, threads
         See :func:`cast_many`.
+    graze_tolerance, solver
+        See :func:`cast_many`; only for convex bodies.
     tolerance : float or array_like of shape (N,), optional
-        For solids, see :class:`SolidCast`.
+        See :class:`SolidCast`; only if one of the bodies is a solid.
     ignore_start_overlaps : bool
-        For solids, see :class:`SolidCast`.
+        See :class:`SolidCast`; only if one of the bodies is a solid.
 
     Returns
     -------
     ClearanceColumns or SolidColumns
+
+    Raises
+    ------
+    InputError
+        See :func:`cast_many`. Or an argument is given for the other kind of bodies.
 
     Examples
     --------

@@ -69,9 +69,11 @@ class WithinColumns(PairColumns[Within]):
     Attributes
     ----------
     normal : ndarray of shape (N, 3)
-        For convex bodies that are farther apart: unit normals, in the world.
+        For convex bodies that are farther apart, and for undecided rows: unit normals, in the
+        world, from the moving body to the fixed one.
     on_moving, on_fixed : ndarray of shape (N, 3)
-        For bodies that are closer: points of both bodies at the distance ``upper``, in the world.
+        For bodies that are closer, and for undecided rows: points of both bodies at the distance
+        ``upper``, in the world.
     """
 
     normal: Floats

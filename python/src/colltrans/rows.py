@@ -72,8 +72,8 @@ def _answer_rows(
     rows, failed, stopped = iter(range(n)), {}, False
 
     def work() -> None:
-        # One iterator serves all threads, because the interpreter executes each step of it
-        # atomically.
+        # One iterator serves all threads, because the interpreter's lock makes each step of it
+        # atomic.
         for i in rows:
             if stopped:
                 return

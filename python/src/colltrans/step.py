@@ -546,9 +546,10 @@ def _lies_beside(name: str) -> bool:
 
 
 def _check_external_files(path: Path, session: Any, known: set[Path]) -> None:
-    """Checks that the external files of a source, also indirect ones, are in its folder.
+    """Checks that the names of the external files of a source stay inside its folder.
 
-    No file outside the folder is opened. Missing files are left to OpenCASCADE.
+    Files that these files reference are checked too. A file is opened only after its name is
+    checked; symbolic links are followed. Missing files are left to OpenCASCADE.
     """
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.STEPConstruct import STEPConstruct_ExternRefs

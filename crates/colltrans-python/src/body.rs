@@ -125,7 +125,10 @@ impl ConvexPolyhedron {
     /// Raises
     /// ------
     /// BuildError
-    ///     The surface is open, inside out or not convex. The message names the place.
+    ///     The surface is open, inside out or not convex. The message names the place. Or the tolerance is
+    ///     negative or not a number.
+    /// InputError
+    ///     An argument is not an array of that shape.
     ///
     /// Examples
     /// --------
@@ -339,7 +342,7 @@ impl ConvexPolyhedron {
     /// Returns
     /// -------
     /// int
-    ///     One of the farthest vertices, up to rounding errors.
+    ///     An index into :attr:`vertices`: one of the farthest vertices, up to rounding errors.
     fn support(&self, direction: &Bound<'_, PyAny>) -> PyResult<u32> {
         Ok(self.0.support(vector(direction, "direction")?).0)
     }

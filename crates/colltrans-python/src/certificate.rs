@@ -56,7 +56,8 @@ getters!(Certificate, |it| {
     rounding: f64 = it.proof.rounding;
     /// ndarray of shape (3,): Unit normal of the supporting plane, in the world.
     normal(py): Vector<'py> = row(py, it.proof.normal);
-    /// ndarray of shape (3, 2): Pairs of vertex numbers, one of the moving and one of the fixed body.
+    /// ndarray of shape (3, 2): Pairs of vertices, one of the moving and one of the fixed body, as indices into
+    /// :attr:`ConvexPolyhedron.vertices`.
     pairs(py): PyResult<Bound<'py, PyArray2<u32>>> =
         table(py, it.proof.pairs.map(|pair| [pair.moving.0, pair.fixed.0]));
     /// ndarray of shape (3,): Weights of the pairs, not negative, with sum 1.

@@ -120,7 +120,8 @@ pub(crate) struct DirectionalDepth {
 answer!(DirectionalDepth("depth") of colltrans::DirectionalDepth, Cast, |it| it.depth);
 
 getters!(DirectionalDepth, |it| {
-    /// float: The depth in multiples of the direction, never less than the true depth; 0 without an overlap.
+    /// float: The depth in multiples of the direction, never less than the true depth. It is 0 without an overlap,
+    /// and for an overlap within rounding errors or the graze tolerance.
     depth: f64 = it.depth.depth;
     /// Blocked or Slides or Behind or Separated or Overlapping: The clearance that determines the depth.
     clearance(py): PyResult<Bound<'py, PyAny>> = it.depth.clearance.object(it.query.bind(py));
@@ -146,7 +147,8 @@ getters!(Intersection, |it| {
     /// bool: Whether the bodies have a common point, up to rounding error. With a minimum gap: whether their
     /// distance is at most the gap.
     meets: bool = it.found.meets;
-    /// ndarray of shape (3,): The direction between the centres, along which a cast decided the answer.
+    /// ndarray of shape (3,): The unit vector from the centre of the moving body to that of the fixed one, along
+    /// which a cast decided the answer; x if the centres coincide.
     direction(py): Vector<'py> = row(py, it.found.evidence.direction);
     /// Contact or Grazing or Separated: The outcome of that cast.
     outcome(py): PyResult<Bound<'py, PyAny>> =

@@ -197,8 +197,8 @@ getters!(Within, |it| {
     lower(py): PyResult<Option<f64>> = Ok(it.told(py)?.lower);
     /// float or None: An upper bound of the distance, if the search computed one.
     upper(py): PyResult<Option<f64>> = Ok(it.told(py)?.upper);
-    /// tuple of (ndarray, ndarray) or None: Points of the moving and of the fixed body, in the world, at the
-    /// distance ``upper``.
+    /// list of two ndarray, or None: Points of the moving and of the fixed body, in the world, at the distance
+    /// ``upper``; None if the search found only a lower bound.
     points(py): PyResult<Option<[Vector<'py>; 2]>> = {
         let points = it.told(py)?.points;
         Ok(points.map(|points| points.map(|point| row(py, DVec3::from_array(point)))))

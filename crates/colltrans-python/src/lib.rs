@@ -2,10 +2,11 @@
 //!
 //! Each group of files uses only the groups before it:
 //!
-//! 1. `errors` (errors of the library as exceptions), `arrays` (conversion of numbers), `pose`, `frozen`
-//!    (shared parts of frozen classes);
+//! 1. `errors` (errors of the library as exceptions), `arguments` (messages for confused arguments), `arrays`
+//!    (conversion of numbers), `pose`, `frozen` (shared parts of frozen classes), `pool` (threads);
 //! 2. bodies: `offset` (reports), `body`, `solid`;
-//! 3. queries as values: `query` (convex bodies), `solid_cast` (solids), `pair` (without a direction);
+//! 3. queries as values: `solver` (options), `query` (convex bodies), `solid_cast` (solids), `pair` (without a
+//!    direction);
 //! 4. answers: `certificate`, `features`, `answer` (shared parts), `outcome`, `clearance`, `solid_answer`,
 //!    `distance`, `directions`, `ways`, `motion` (queries and answers for bodies that turn);
 //! 5. entry points: `questions` (functions and methods of queries), `tracker` (sequences), `rows`, `repeats`,

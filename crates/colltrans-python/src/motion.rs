@@ -186,6 +186,11 @@ impl Motion {
     }
 
     /// Returns the pose of the body at a time from 0 to 1, up to rounding.
+    ///
+    /// Raises
+    /// ------
+    /// QueryError
+    ///     The time is not from 0 to 1.
     fn at(&self, time: f64) -> PyResult<Pose> {
         self.0.pose_at(time).or_raise().map(Pose)
     }

@@ -464,7 +464,7 @@ getters!(PathAnswer, |it| {
     /// tuple of (str, str) or None: The two bodies, links or scene bodies.
     pair: Option<(&str, &str)> = it.record.pair.as_ref().map(|[a, b]| (a.as_str(), b.as_str()));
     /// tuple of (int, float) or None: The position of ``lower`` on the path: the row before it, and the
-    /// fraction of the step to the next row.
+    /// fraction of the step to the next row; None if no bodies meet.
     place: Option<(usize, f64)> = it.record.place.map(|place| (place.row, place.share));
     /// ndarray of shape (3,) or None: The point of the first body that is nearest to the second at that time,
     /// in the world.

@@ -27,7 +27,7 @@ getters!(WaysOut, |it| {
     /// str: ``"found"``; ``"none"`` if it is proven that no sequence of translations exists; ``"not_found"``
     /// if the search found none, without a proof.
     outcome: &'static str = it.record.outcome;
-    /// list of tuple of (tuple of float, float): The moves in order: a unit direction and a travel, which is
+    /// list of tuple of (list of float, float): The moves in order: a unit direction and a travel, which is
     /// infinite for the last move. Empty if no path was found.
     legs: Vec<([f64; 3], f64)> =
         it.record.legs.iter().map(|leg| (leg.direction, leg.travel)).collect();

@@ -388,7 +388,7 @@ def concatenate(columns: "Sequence[Columns_]") -> Columns_:
     Parameters
     ----------
     columns : sequence of columns
-        At least one, all of answers to the same query.
+        At least one, all of one class: the answers of several calls of the same function.
 
     Returns
     -------
@@ -397,7 +397,8 @@ def concatenate(columns: "Sequence[Columns_]") -> Columns_:
     Raises
     ------
     InputError
-        There are no columns, or they answer different queries.
+        There are no columns, their classes differ, only some have features, or paths are about
+        different bodies.
 
     Examples
     --------

@@ -97,6 +97,8 @@ def picture(answer: Any) -> Any:
         plotly is missing; run ``pip install colltrans[pictures]``.
     TypeError
         The argument is not a body, a query or an answer.
+    InputError
+        A plan was restored from a pickle, so it has no bodies.
 
     Examples
     --------

@@ -1,6 +1,6 @@
 //! Conversion of numbers between Python and the library.
 //!
-//! Small arguments (directions, poses) are read here if they are tuples or lists of numbers, or arrays in
+//! Small arguments (directions, poses) are read here if they are tuples or lists of numbers, or aligned arrays in
 //! native double precision, strided or not. `get_owned` copies one number and borrows nothing. All other
 //! arguments go through `colltrans._arrays`, which accepts what numpy accepts and reports what is wrong
 //! otherwise.

@@ -1,8 +1,8 @@
 //! Assemblies: which parts can be removed. The results are plain numbers and part indices, from which
 //! `colltrans.assembly` builds its classes.
 //!
-//! The work runs on a thread of its own. The calling thread waits, polls for signals, and cancels the work if
-//! a signal handler raises.
+//! Computations run on a thread of their own. The calling thread waits, polls for signals, and cancels the
+//! computation if a signal handler raises. Files are read without such polls.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -5,7 +5,8 @@
 //! thread costs only as much as some ten casts. A row without an answer has the outcome *error* and a
 //! message, even if a panic ended it.
 //!
-//! The calling thread polls for signals ten times a second, so that Ctrl-C ends the call.
+//! The calling thread answers rows too. Between rows it polls for signals, at most ten times a second, so that
+//! Ctrl-C ends the call. It does not poll while it waits for the last rows of other threads.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};

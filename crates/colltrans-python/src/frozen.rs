@@ -1,7 +1,7 @@
 //! Shared parts of frozen classes: names for `match`, pictures, and text for `pickle` and `copy`.
 //!
-//! `__reduce__` of a class names its static method `_of` and the serialised state, which restores the same
-//! bits. Restored answers are trusted like any pickle; `verify` checks a proof in them as usual. The Python
+//! `__reduce__` of an answer names the static method `_of` of its class and the serialised state, which restores
+//! the same bits. Restored answers are trusted like any pickle; `verify` checks a proof in them as usual. The Python
 //! function `show` of the package draws pictures.
 
 use pyo3::PyClass;

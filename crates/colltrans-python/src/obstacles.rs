@@ -285,7 +285,8 @@ impl Obstacles {
     /// Raises
     /// ------
     /// QueryError
-    ///     The facets of a convex body do not form a surface, as a query with a solid needs.
+    ///     A pair has a solid and a convex body that is rounded or whose facets do not form a surface. Or a search
+    ///     ended without an answer.
     #[pyo3(signature = (body, pose=None, *, ignore=HashSet::new()),
         text_signature = "($self, body, pose=None, *, ignore=())")]
     fn nearest(

@@ -505,6 +505,13 @@ class Assembly:
         Returns
         -------
         Assembly
+
+        Raises
+        ------
+        AssemblyError
+            A file is invalid or missing; the message has the reason and the place.
+        colltrans.step.StepError
+            A STEP file cannot be converted, or the converter is not installed.
         """
         folders = [Path(package) for package in packages]
         glb = None

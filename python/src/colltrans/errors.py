@@ -4,7 +4,7 @@ import errno
 
 
 class ColltransError(Exception):
-    """The base class of all errors of this package."""
+    """The base class of all errors in this module."""
 
 
 class InputError(ColltransError, ValueError):

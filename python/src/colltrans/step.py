@@ -6,8 +6,8 @@ and any viewer read. It prints one JSON object: the name of every part, its numb
 *chord error*, the distance of its facets from the surface that they approximate.
 
 The product tree comes from OpenCASCADE's document (XCAF), including external files. A part is a
-leaf of the product tree. Curves and points are left out; a note names the parts that contain
-nothing else.
+product in which no other product is placed. Curves and points are left out; a note names the parts
+that contain nothing else.
 
 OpenCASCADE aims at the chord error of ``--chord`` but does not always reach it. Therefore the error
 is measured, with the numbers that are written to the file:

@@ -429,7 +429,8 @@ class Assembly:
     Raises
     ------
     AssemblyError
-        A part has no valid surface, or two parts have the same name.
+        A part has no valid surface, or two parts have the same name. Methods raise this error for
+        an unknown part name, and for constraints that are cyclic or contradict each other.
     InputError
         The argument is not a mapping, or a part is not a pair of vertices and faces.
 
@@ -587,7 +588,7 @@ class Assembly:
         *names : str
         along : array_like of shape (3,)
         within : float
-            The angle in degrees.
+            The angle in degrees, at least 0 and less than 180.
         """
         return self._of(self._assembly.with_never(list(names), along, within))
 
@@ -619,7 +620,10 @@ class Assembly:
     def suggestions(
         self, *, tolerance: float | None = None, stuck: Sequence[Stuck] = ()
     ) -> list[PairFit]:
-        """Suggests roles and tolerances for pairs that overlap with a tolerance, without a proof.
+        """Suggests roles and tolerances of pairs, without a proof.
+
+        They are for pairs that overlap with the tolerance of the bodies, for rings that snap into a
+        groove, and for threads with play in stuck groups.
 
         Parameters
         ----------

@@ -320,6 +320,8 @@ question! {
     /// ------
     /// QueryError, PoseError, InputError
     ///     An argument is rejected; the message has its name or its value.
+    /// NotConvergedError
+    ///     The search ended without an answer.
     ///
     /// Examples
     /// --------

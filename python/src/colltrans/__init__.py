@@ -7,7 +7,7 @@ queries. Many parts form an :class:`Assembly`, links with joints form a :class:`
 
 Vertices are in the body frame; poses place bodies in the world. Directions, normals and points are
 in the world. Translations are multiples of the direction, so they are lengths if it has length 1.
-The unit of length is the caller's.
+The unit of length is the caller's, except that robots are in metres.
 """
 
 from importlib.metadata import version as _version

@@ -744,7 +744,8 @@ class Assembly:
         tolerance, ignore_overlaps
             See :meth:`rooms`.
         gravity : array_like of shape (3,), optional
-            The direction of gravity; the default is ``-y`` for glTF, otherwise ``-z``.
+            The direction of gravity. The default is opposite to the upward axis of the file; ``-z``
+            if the file states none. It is ``-y`` for glTF.
         remove : str or sequence of str, optional
             Wanted parts. The plan then removes only these and the fewest other parts, as far as
             this is proven. Names may end with ``*``.

@@ -251,6 +251,8 @@ class Table(Generic[Answer_co]):
     def to_xarray(self) -> "xarray.Dataset":
         """Converts the columns to a data set of xarray with the dimensions ``query`` and ``axis``.
 
+        Columns of features have the dimensions ``query`` and ``corner``.
+
         Raises
         ------
         ModuleNotFoundError
@@ -329,8 +331,8 @@ class TimeColumns(Table[Answer_co]):
     Attributes
     ----------
     lower, upper : ndarray of shape (N,)
-        Proven bounds of the times of contacts: no contact before the first one, and the contact
-        that stops the motion at the second one.
+        Bounds of a time: that of the first contact, or that until which a body can move. The class
+        of the answers states what they prove.
     """
 
     lower: Floats

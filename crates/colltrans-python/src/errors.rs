@@ -1,6 +1,7 @@
-//! Converts errors of the library to the exceptions of `colltrans.errors`, with the same messages.
+//! Converts errors of the library to the exceptions of `colltrans.errors`, with the same messages. For a file whose
+//! mesh is rejected, the message also has the calls that would accept it.
 //!
-//! The exceptions are Python classes, because each has two bases: the base class of the package, and the
+//! The exceptions are Python classes, because most have several bases: the base class of the package, and the
 //! built-in exception that a caller would expect.
 
 use std::ffi::OsStr;

@@ -41,6 +41,15 @@ use crate::solid::Piece;
 /// ignore_start_overlaps : bool
 ///     Whether facets that cross at the start are ignored. Contacts that begin later still block.
 ///
+/// Raises
+/// ------
+/// QueryError
+///     The direction is zero or out of range, a length is negative, or the tolerance leaves nothing of a body.
+/// BuildError
+///     A convex body is rounded, or its facets do not form a surface.
+/// PoseError, InputError
+///     An argument does not describe a pose, or is not an array of that shape.
+///
 /// Examples
 /// --------
 /// >>> from colltrans import Solid, SolidCast

@@ -608,11 +608,20 @@ class Assembly:
             Each of the first parts forms a pair with each of the second; names may end with ``*``.
         role : str, optional
             ``"press"`` or ``"soft"``: both parts are shrunk, only against each other, by half of
-            the tolerance or of their overlap. ``"thread"``: the screw is replaced by its core.
-            ``"snap"``: contacts that begin within the tolerance of the start are ignored.
-            ``"glued"``: the parts leave as one.
+            the tolerance or of their overlap. If shrinking by their overlap would destroy a part,
+            crossings at the start are ignored instead. ``"thread"``: the screw is replaced by its
+            core; without a thread in the parts, crossings at the start are ignored. ``"snap"``:
+            contacts that begin within the tolerance of the start are ignored. ``"glued"``: the
+            parts leave as one.
         tolerance : float, optional
-            The tolerance of these pairs.
+            The tolerance of these pairs, a length. ``"snap"`` needs one.
+
+        Raises
+        ------
+        AssemblyError
+            Neither a role nor a tolerance is given, a value is invalid, or a name is unknown.
+        InputError
+            The role is unknown.
         """
         lists = _list(first), _list(second)
         return self._of(self._assembly.with_pair(*lists, role, tolerance))

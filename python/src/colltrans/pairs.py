@@ -47,13 +47,15 @@ class DistanceColumns(PairColumns[Distance]):
 class DepthColumns(PairColumns[Depth | OverlapDepth]):
     """The answers of :func:`depth_many`; see :class:`PairColumns`.
 
+    The bounds ``lower`` and ``upper`` of solids that overlap are NaN.
+
     Attributes
     ----------
     least_tolerance : ndarray of shape (N,)
         For solids that overlap: the smallest tolerance without an overlap, a length.
     direction : ndarray of shape (N, 3)
-        For convex bodies that overlap: unit vectors, in the world, along which the moving body
-        leaves.
+        For convex bodies that overlap or touch: unit vectors, in the world, along which the moving
+        body leaves.
     """
 
     least_tolerance: Floats

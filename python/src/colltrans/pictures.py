@@ -96,7 +96,8 @@ def picture(answer: Any) -> Any:
     ModuleNotFoundError
         plotly is missing; run ``pip install colltrans[pictures]``.
     TypeError
-        The argument is not a body, a query or an answer.
+        The argument has no picture: it is not a body, a query or an answer, or its answer is about
+        obstacles, free directions or removal paths.
     InputError
         A plan was restored from a pickle, so it has no bodies.
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import ROOT
 
 from colltrans import (
     BuildError,
@@ -33,11 +34,12 @@ DOWN = [0.0, 0, -1]
 
 
 def test_casts_meet_the_round_surface() -> None:
-    for start, expected in [
+    cases: list[tuple[list[float], float]] = [
         ([0, 0, 5], 3.5),
         ([1.25, 0, 5], 4 - math.sqrt(0.25 - 0.0625)),
         ([1.2, 1.2, 5], 4 - math.sqrt(0.25 - 0.08)),
-    ]:
+    ]
+    for start, expected in cases:
         query = Cast(BALL, CUBE, DOWN, moving_pose=start)
         found: Any = query.first_contact()
         assert found.translation == pytest.approx(expected, abs=1e-13)
@@ -55,8 +57,8 @@ def test_casts_meet_the_round_surface() -> None:
 def test_proofs_of_other_radii_are_refused() -> None:
     found: Any = cast(BALL, CUBE, DOWN, moving_pose=[1.25, 0, 5])
     aside: Any = cast(BALL, CUBE, DOWN, moving_pose=[2, 0, 5])
-    apart: Any = distance(BALL.at([0, 0, 4]), CUBE)
-    deep: Any = depth(BALL.at([0, 0, 1.25]), CUBE)
+    apart: Any = distance(BALL, CUBE, moving_pose=[0, 0, 4])
+    deep: Any = depth(BALL, CUBE, moving_pose=[0, 0, 1.25])
     for answer, directions in [(found, (-1, 1)), (aside, (1,)), (apart, (-1, 1)), (deep, (-1, 1))]:
         text = answer.proof_json()
         assert check.check(text).holds
@@ -69,18 +71,20 @@ def test_proofs_of_other_radii_are_refused() -> None:
 
 def test_distances_and_depths_follow_the_radii() -> None:
     pill = ConvexPolyhedron.capsule([-1, 0, 0], [1, 0, 0], 0.25)
-    apart = distance(pill, pill.at([0, 2, 0]))
+    apart = distance(pill, pill, fixed_pose=[0, 2, 0])
     assert apart.lower <= 1.5 <= apart.upper < 1.5 + 1e-12
     assert apart.on_moving[1] == pytest.approx(0.25) and apart.on_fixed[1] == pytest.approx(1.75)
-    assert depth(BALL.at([0, 0, 1.25]), CUBE).upper == pytest.approx(0.25)
-    assert depth(BALL.at([0, 0, 0.75]), CUBE).upper == pytest.approx(0.75)
-    assert within(BALL.at([0, 0, 2]), CUBE, 0.51) and not within(BALL.at([0, 0, 2]), CUBE, 0.49)
+    assert depth(BALL, CUBE, moving_pose=[0, 0, 1.25]).upper == pytest.approx(0.25)
+    assert depth(BALL, CUBE, moving_pose=[0, 0, 0.75]).upper == pytest.approx(0.75)
+    assert within(BALL, CUBE, 0.51, moving_pose=[0, 0, 2]) and not within(
+        BALL, CUBE, 0.49, moving_pose=[0, 0, 2]
+    )
     assert BALL.volume == pytest.approx(math.pi / 6)
 
 
 def test_many_casts_agree_with_single_ones() -> None:
     starts = np.array([[x, 0.1, 4.0] for x in np.linspace(-2, 2, 41)])
-    many = cast_many(BALL, CUBE, DOWN, moving_poses=starts)
+    many = cast_many(BALL, CUBE, DOWN, moving_pose=starts)
     for row, start in enumerate(starts):
         one: Any = cast(BALL, CUBE, DOWN, moving_pose=start)
         found = getattr(one, "translation", math.nan)
@@ -88,12 +92,12 @@ def test_many_casts_agree_with_single_ones() -> None:
 
 
 def test_motions_and_obstacles_accept_rounded_bodies() -> None:
-    swing = Motion.turn([0, 0, 0], [0, 1, 0], degrees=90, start=[0, 0, 4])
+    swing = Motion.turn([0, 0, 0], [0, 1, 0], degrees=90, pose=[0, 0, 4])
     floor = ConvexPolyhedron.cuboid([-9, -9, -1], [9, 9, 0])
     met: Any = first_contact(BALL, floor, swing)
     assert met.lower <= math.acos(0.5 / 4) / (math.pi / 2) <= met.upper
     scene = Obstacles()
-    names = [scene.insert(BALL.at([3.0 * k, 0, 0])) for k in range(1, 9)]
+    names = [scene.add(BALL, [3.0 * k, 0, 0]) for k in range(1, 9)]
     nearest: Any = scene.nearest(BALL)
     assert nearest.obstacle == names[0]
     assert nearest.distance.upper == pytest.approx(2)
@@ -112,6 +116,6 @@ def test_what_is_not_defined_is_refused() -> None:
             ConvexPolyhedron.sphere(radius)
     with pytest.raises(BuildError, match="rounded"):
         BALL.grown(0.5)
-    solid = Solid.from_convex(CUBE)
+    solid = Solid.read(ROOT / "data" / "bolt.stl")
     with pytest.raises((BuildError, QueryError), match="rounded"):
-        clearance(BALL.at([0, 0, 4]), solid, DOWN)
+        clearance(BALL, solid, DOWN, moving_pose=[0, 0, 40])

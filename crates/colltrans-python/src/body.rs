@@ -221,7 +221,7 @@ impl ConvexPolyhedron {
     /// >>> from colltrans import ConvexPolyhedron, cast
     /// >>> ball = ConvexPolyhedron.sphere(0.5)
     /// >>> floor = ConvexPolyhedron.cuboid([-9, -9, -1], [9, 9, 0])
-    /// >>> float(cast(ball.at([0, 0, 3]), floor, [0, 0, -1]).translation)
+    /// >>> round(cast(ball, floor, [0, 0, -1], moving_pose=[0, 0, 3]).translation, 9)
     /// 2.5
     #[staticmethod]
     #[pyo3(signature = (radius, center=None))]
@@ -251,8 +251,8 @@ impl ConvexPolyhedron {
     /// --------
     /// >>> from colltrans import ConvexPolyhedron, distance
     /// >>> pill = ConvexPolyhedron.capsule([-1, 0, 0], [1, 0, 0], 0.25)
-    /// >>> distance(pill, pill.at([0, 2, 0])).upper < 1.5 + 1e-12
-    /// True
+    /// >>> round(distance(pill, pill, fixed_pose=[0, 2, 0]).upper, 9)
+    /// 1.5
     #[staticmethod]
     fn capsule(start: &Bound<'_, PyAny>, end: &Bound<'_, PyAny>, radius: f64) -> PyResult<Self> {
         let ends = [vector(start, "start")?, vector(end, "end")?];

@@ -112,9 +112,8 @@ impl Cast {
         // All other queries of polyhedra take about a microsecond for bodies of any size; waiting for the lock
         // would take longer.
         let options = &self.options;
-        let rounded = self.radii_sum() != 0.0;
-        let is_long =
-            options.min_gap != 0.0 || rounded || options.solver == colltrans::Solver::Cta;
+        let rounded = [&self.moving, &self.fixed].iter().any(|body| body.get().0.radius() != 0.0);
+        let is_long = options.min_gap != 0.0 || rounded || options.solver == colltrans::Solver::Cta;
         let found = if is_long { py.detach(work) } else { work() };
         found.map_err(|what| self.error(&what))
     }

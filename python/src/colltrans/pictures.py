@@ -334,7 +334,7 @@ def placed(body: Solid | ConvexPolyhedron, pose: Pose) -> Placed:
     return vertices, triangles, _creases(vertices, triangles)
 
 
-def _drawn(body: ConvexPolyhedron) -> ConvexPolyhedron:
+def _drawn_body(body: ConvexPolyhedron) -> ConvexPolyhedron:
     """Returns the body, or for a rounded body a polyhedron inside it that approximates it."""
     if body.radius == 0 or len(body.vertices) > _MAX_DRAWN_BALLS:
         return body

@@ -76,9 +76,11 @@ def test_distances_and_depths_follow_the_radii() -> None:
     assert apart.on_moving[1] == pytest.approx(0.25) and apart.on_fixed[1] == pytest.approx(1.75)
     assert depth(BALL, CUBE, moving_pose=[0, 0, 1.25]).upper == pytest.approx(0.25)
     assert depth(BALL, CUBE, moving_pose=[0, 0, 0.75]).upper == pytest.approx(0.75)
-    assert within(BALL, CUBE, 0.51, moving_pose=[0, 0, 2]) and not within(
-        BALL, CUBE, 0.49, moving_pose=[0, 0, 2]
-    )
+    above = [0, 0, 2]
+    assert within(BALL, CUBE, 0.51, moving_pose=above).closer is True
+    assert within(BALL, CUBE, 0.49, moving_pose=above).closer is False
+    near: Any = within(BALL, CUBE, 1.0, moving_pose=above).points
+    assert near[0][2] == pytest.approx(1.5) and near[1][2] == pytest.approx(1)
     assert BALL.volume == pytest.approx(math.pi / 6)
 
 
@@ -87,7 +89,7 @@ def test_many_casts_agree_with_single_ones() -> None:
     many = cast_many(BALL, CUBE, DOWN, moving_pose=starts)
     for row, start in enumerate(starts):
         one: Any = cast(BALL, CUBE, DOWN, moving_pose=start)
-        found = getattr(one, "translation", math.nan)
+        found = getattr(getattr(one, "contact", one), "translation", math.nan)
         np.testing.assert_array_equal(many.translation[row], found)
 
 
@@ -100,7 +102,7 @@ def test_motions_and_obstacles_accept_rounded_bodies() -> None:
     names = [scene.add(BALL, [3.0 * k, 0, 0]) for k in range(1, 9)]
     nearest: Any = scene.nearest(BALL)
     assert nearest.obstacle == names[0]
-    assert nearest.distance.upper == pytest.approx(2)
+    assert nearest.upper == pytest.approx(2)
 
 
 def test_copies_keep_the_radius() -> None:

@@ -13,7 +13,7 @@ import colltrans
 TUTORIALS = ROOT / "python" / "docs" / "tutorials"
 GUIDES = [
     ROOT / "docs" / "guide" / f"{name}.md"
-    for name in ("python", "python-arrays", "distance", "motions", "robots")
+    for name in ("python", "python-arrays", "distance", "rounded", "motions", "robots")
 ]
 PAGES = [*GUIDES, *sorted(TUTORIALS.glob("*.md"))]
 
@@ -25,7 +25,8 @@ def docstrings() -> Iterator[tuple[str, str]]:
     for name in colltrans.__all__:
         thing: Any = getattr(colltrans, name)
         yield name, thing.__doc__ or ""
-        for member, value in vars(thing).items() if isinstance(thing, type) else ():
+        # In a fixed order: the extension adds members of a class in any.
+        for member, value in sorted(vars(thing).items()) if isinstance(thing, type) else ():
             if not member.startswith("_") and getattr(value, "__doc__", None):
                 yield f"{name}.{member}", value.__doc__
 

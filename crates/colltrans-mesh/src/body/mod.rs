@@ -189,9 +189,11 @@ impl BodyError {
                 | BuildError::InsideOut { .. }
                 | BuildError::Topology(_),
             ) => &[BodyKind::Solid, BodyKind::Hull],
-            Self::Convex(_) | Self::NeedsRepair(_) | Self::ShapeName { .. } => &[],
+            Self::Convex(_)
+            | Self::NeedsRepair(_)
+            | Self::ShapeName { .. }
+            | Self::Solid(SolidError::Rounded { .. }) => &[],
             Self::Solid(SolidError::Open { .. }) => &[BodyKind::Open, BodyKind::Hull],
-            Self::Solid(SolidError::Rounded { .. }) => &[],
             Self::Solid(_) => &[BodyKind::Hull],
         }
     }

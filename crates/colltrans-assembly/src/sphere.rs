@@ -123,7 +123,7 @@ impl Sphere {
 /// Returns the direction with length 1. Directions of axes keep their exact components.
 ///
 /// # Errors
-/// Returns an error if a component is not finite, or if all are below [`MIN_MAGNITUDE`](colltrans::MIN_MAGNITUDE) in
+/// Returns an error if a component is not finite, or if all are below `colltrans::MIN_MAGNITUDE` in
 /// magnitude.
 pub fn normalized_direction(direction: DVec3) -> Result<DVec3, AssemblyError> {
     let scale = direction.abs().max_element();

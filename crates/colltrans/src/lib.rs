@@ -149,6 +149,12 @@
 
 #[cfg(feature = "motion")]
 pub mod motion;
+/// Removal of a solid from others: the set of free translation directions, and paths of several moves.
+#[cfg(feature = "removal")]
+pub mod removal {
+    #[doc(inline)]
+    pub use colltrans_removal::{directions, path};
+}
 #[cfg(feature = "solid")]
 pub mod solid;
 
@@ -180,9 +186,6 @@ pub use colltrans_proof::{
     Contacts, DistanceStatement, FreeStatement, ProofError, ProofFile, ProofFileError, Proven,
     Slide, Statement, Stop, Verify,
 };
-#[cfg(feature = "removal")]
-#[doc(inline)]
-pub use colltrans_removal as removal;
 #[cfg(feature = "scene")]
 #[doc(inline)]
 pub use colltrans_scene::{

@@ -36,8 +36,8 @@ impl ConvexPolyhedron {
     ///     unreachable!("it hits the rounded edge")
     /// };
     /// // At a height of 2 + sqrt(1.25^2 - 0.75^2) = 3.
-    /// assert!((contact.translation - 7.0).abs() < 1e-13);
-    /// assert!(cast.verify(&contact.certificate)? < 1e-13);
+    /// assert!((contact.translation - 7.0).abs() < 1e-12);
+    /// assert!(cast.verify(&contact.certificate)? < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn rounded(self, radius: f64) -> Result<Self, BuildError> {

@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 use super::convex::{MAX_BOUND_GAP, core_depth};
-use super::verify::core_distance;
+use super::verify::depth_by_points;
 use crate::answer::{Depth, Distance, Enclosure, NearPoints, PlaneGap};
 use crate::setting::TwoBodies;
 use crate::setting::error::{QueryError, Stalled};
@@ -18,12 +18,18 @@ use crate::solve::nearest::{Difference, NearestPairs, nearest_points};
 /// Lowers the upper bound of a distance of cores by both radii. Changes nothing if no body is rounded.
 #[inline]
 pub(super) fn near_points(bodies: &TwoBodies, near: NearPoints) -> NearPoints {
-    if !bodies.is_rounded() || near.distance == 0.0 {
-        return near;
+    NearPoints { distance: distance_of_bodies(bodies, near.distance), ..near }
+}
+
+/// Returns the upper bound of the distance of the bodies, from one of their cores, rounded up; 0 if it is at most the
+/// sum of the radii.
+#[inline]
+pub(super) fn distance_of_bodies(bodies: &TwoBodies, of_cores: f64) -> f64 {
+    match bodies.core_gap_bounds(0.0)[0] {
+        0.0 => of_cores,
+        radii if of_cores <= radii => 0.0,
+        radii => (of_cores - radii).next_up(),
     }
-    let [radii, _] = bodies.core_gap_bounds(0.0);
-    let distance = near.distance - radii;
-    NearPoints { distance: if distance > 0.0 { distance.next_up() } else { 0.0 }, ..near }
 }
 
 /// Lowers the gap of a plane between cores by both radii. Changes nothing if no body is rounded.
@@ -89,8 +95,8 @@ pub(super) fn depth(bodies: &TwoBodies, enough: f64) -> Result<Depth, QueryError
         let direction = -plane.gap.normal;
         let upper = (most - plane.gap.gap).next_up().max(0.0);
         let near = found.near_points(&difference);
-        let lower = core_distance(bodies, &near).map_or(0.0, |apart| (least - apart).next_down());
-        let lower = if upper == 0.0 { 0.0 } else { lower.max(0.0) };
+        let lower = depth_by_points(bodies, &near).unwrap_or(0.0);
+        let lower = if upper == 0.0 { 0.0 } else { lower };
         let tolerance = MAX_BOUND_GAP * difference.noise.point_error() + plane.excess;
         if lower <= enough && upper - lower > tolerance + 8.0 * f64::EPSILON * most {
             let reason = Stalled::Distance { lower, upper, tolerance };
@@ -105,7 +111,7 @@ pub(super) fn depth(bodies: &TwoBodies, enough: f64) -> Result<Depth, QueryError
         return Ok(Depth { lower: (cores.lower + least).next_down(), upper, ..cores });
     }
     let near = found.near_points(&difference);
-    let lower = core_distance(bodies, &near).map_or(0.0, |apart| (least - apart).next_down());
+    let lower = depth_by_points(bodies, &near).unwrap_or(0.0);
     let near = (lower > 0.0).then(|| near_points(bodies, near));
-    Ok(Depth { lower: lower.max(0.0), upper, near, ..cores })
+    Ok(Depth { lower, upper, near, ..cores })
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::rounded::distance_of_bodies;
 use crate::answer::{CertificateError, Depth, Enclosure, NearPoints, PlaneGap, are_weights};
 use crate::setting::{TwoBodies, VertexPair};
 use crate::solve::nearest::surrounds_origin;
@@ -31,13 +32,7 @@ pub(super) fn verify_points(
         let met = do_pairs_surround_origin(bodies, points);
         return if met { Ok(0.0) } else { Err(CertificateError::StartClaim) };
     }
-    let [radii, _] = bodies.core_gap_bounds(0.0);
-    let apart = core_distance(bodies, points)?;
-    let proven = match radii {
-        0.0 => apart,
-        _ if apart <= radii => 0.0,
-        _ => (apart - radii).next_up(),
-    };
+    let proven = distance_of_bodies(bodies, core_distance(bodies, points)?);
     if claimed >= proven {
         Ok(proven)
     } else if claimed == 0.0 {
@@ -49,10 +44,7 @@ pub(super) fn verify_points(
 
 /// Returns an upper bound of the distance of the cores that two points prove, 0 if the pairs enclose the origin.
 /// Only the distance of rounded bodies may be claimed to be 0 by points that are apart.
-pub(super) fn core_distance(
-    bodies: &TwoBodies,
-    points: &NearPoints,
-) -> Result<f64, CertificateError> {
+fn core_distance(bodies: &TwoBodies, points: &NearPoints) -> Result<f64, CertificateError> {
     let NearPoints { pairs, weights, .. } = points;
     check_vertices_exist(bodies, pairs)?;
     if bodies.is_rounded() && points.distance == 0.0 && do_pairs_surround_origin(bodies, points) {
@@ -65,6 +57,16 @@ pub(super) fn core_distance(
     let sum: f64 = weights.iter().sum();
     let mean: DVec3 = terms.iter().zip(weights).map(|(m, w)| m.rounded_point() * (w / sum)).sum();
     Ok((mean.length() + bodies.noise().checked_mean_length_margin()).next_up())
+}
+
+/// Returns a lower bound of the depth of rounded bodies that two points of their cores prove: the sum of the radii less
+/// the distance of the points; 0 if that is negative.
+pub(super) fn depth_by_points(
+    bodies: &TwoBodies,
+    points: &NearPoints,
+) -> Result<f64, CertificateError> {
+    let [radii, _] = bodies.core_gap_bounds(0.0);
+    Ok((radii - core_distance(bodies, points)?).next_down().max(0.0))
 }
 
 /// Checks whether the differences of four pairs of existing vertices enclose the origin.
@@ -92,7 +94,7 @@ pub(super) fn verify_depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, Cer
         let radius = enclosed_radius(bodies, &depth.enclosure)?;
         if least == 0.0 { radius } else { (radius + least).next_down() }
     } else if let Some(near) = &depth.near {
-        (least - core_distance(bodies, near)?).next_down().max(0.0)
+        depth_by_points(bodies, near)?
     } else {
         0.0
     };

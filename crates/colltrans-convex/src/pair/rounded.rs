@@ -18,18 +18,7 @@ use crate::solve::nearest::{Difference, NearestPairs, nearest_points};
 /// Lowers the upper bound of a distance of cores by both radii. Changes nothing if no body is rounded.
 #[inline]
 pub(super) fn near_points(bodies: &TwoBodies, near: NearPoints) -> NearPoints {
-    NearPoints { distance: distance_of_bodies(bodies, near.distance), ..near }
-}
-
-/// Returns the upper bound of the distance of the bodies, from one of their cores, rounded up; 0 if it is at most the
-/// sum of the radii.
-#[inline]
-pub(super) fn distance_of_bodies(bodies: &TwoBodies, of_cores: f64) -> f64 {
-    match bodies.core_gap_bounds(0.0)[0] {
-        0.0 => of_cores,
-        radii if of_cores <= radii => 0.0,
-        radii => (of_cores - radii).next_up(),
-    }
+    NearPoints { distance: bodies.distance_less_radii(near.distance), ..near }
 }
 
 /// Lowers the gap of a plane between cores by both radii. Changes nothing if no body is rounded.

@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::rounded::distance_of_bodies;
 use crate::answer::{CertificateError, Depth, Enclosure, NearPoints, PlaneGap, are_weights};
 use crate::setting::{TwoBodies, VertexPair};
 use crate::solve::nearest::surrounds_origin;
@@ -32,7 +31,7 @@ pub(super) fn verify_points(
         let met = do_pairs_surround_origin(bodies, points);
         return if met { Ok(0.0) } else { Err(CertificateError::StartClaim) };
     }
-    let proven = distance_of_bodies(bodies, core_distance(bodies, points)?);
+    let proven = bodies.distance_less_radii(core_distance(bodies, points)?);
     if claimed >= proven {
         Ok(proven)
     } else if claimed == 0.0 {

@@ -198,6 +198,17 @@ impl<B: VertexHull> TwoBodies<'_, B> {
         if radii == 0.0 { core_gap } else { (core_gap - radii).next_down() }
     }
 
+    /// Returns an upper bound of the distance of the cores less both radii, rounded up; 0 if that is negative, and the
+    /// bound itself if no body is rounded.
+    #[inline]
+    pub(crate) fn distance_less_radii(&self, of_cores: f64) -> f64 {
+        match self.core_gap_bounds(0.0)[0] {
+            0.0 => of_cores,
+            radii if of_cores <= radii => 0.0,
+            radii => (of_cores - radii).next_up(),
+        }
+    }
+
     /// Returns the gap that the plane with this normal proves between the inputs of the cores of the bodies, in
     /// world units.
     ///

@@ -36,7 +36,7 @@ impl MotionCast<'_, Solid> {
     /// have no such proof with [`StartOverlap::Ignore`]. Two facets that are separated at the start are then proven not
     /// to meet before the answer, except in contacts at which they do not face each other. Such contacts, and facets
     /// that cross at the start, are ignored by convention. The time at which ignored facets are separated again is
-    /// found by samples.
+    /// found by samples, and up to a thousandth of the searched interval after an ignored contact is skipped.
     ///
     /// # Errors
     /// Returns the errors of [`Self::first_contact`], and [`QueryError::NotConverged`] if the search took its maximum

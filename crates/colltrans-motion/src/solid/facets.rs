@@ -19,6 +19,8 @@ use super::super::search::{SpanEnd, SpanResult, prove_span};
 use super::super::span::{Instant, Span};
 use super::tree::Facet;
 use colltrans_convex::answer::are_weights;
+use colltrans_convex::body::VertexHull;
+use colltrans_kernel::pose::MAX_STRETCH;
 use colltrans_solid::solve::nearest::triangle::{self, Corners, GAP_NOISES, LENGTH_NOISES};
 
 /// Samples distances of two facets.
@@ -132,8 +134,11 @@ const BISECTIONS: i32 = 40;
 
 /// Time from an ignored contact to the next sample, as a share of the span. It doubles at each such contact.
 const FIRST_RETRY_SHARE: f64 = 1e-9;
-/// Maximum number of ignored contacts of two facets in a span. Later contacts in this span are ignored as well.
-const MAX_RETRIES: i32 = 32;
+/// Maximum of this share.
+const MAX_RETRY_SHARE: f64 = 1e-3;
+
+/// Relative rounding error of a computed speed along a normal.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Maximum cosine between normal and direction of motion at which a facet counts as parallel to the motion.
 const MIN_COSINE: f64 = 1e-12;
@@ -143,6 +148,8 @@ const MIN_COSINE: f64 = 1e-12;
 pub(super) struct LaterContact {
     /// Time up to which they are separated, from the last time on at which the search found them separated.
     pub(super) lower: f64,
+    /// Whether a search took its maximum number of steps, so that it is open whether they meet.
+    pub(super) is_open: bool,
     /// Time of a proven contact and the proof.
     pub(super) met: Option<(f64, FacetContactProof)>,
 }
@@ -150,6 +157,9 @@ pub(super) struct LaterContact {
 /// Finds the first contact of two facets that begins within a span while they face each other. `sided` states which
 /// facets have an outer side. Facets that are not separated at the start of the span are ignored until they are. An
 /// exception are facets that may only touch at the start of the motion.
+///
+/// `None` is proven, except for times at which facets count as ignored: up to the sampled time at which they are
+/// separated, and for at most a thousandth of the span after a contact at which they do not face each other.
 pub(super) fn find_later_contact(
     span: &Span<Facet>,
     sided: [bool; 2],
@@ -160,26 +170,34 @@ pub(super) fn find_later_contact(
         && sampler.prove_contact(span, 0.0).is_none()
         && face_each_other(span, 0.0, sided, sampler)
     {
-        return Some(LaterContact { lower: 0.0, met: None });
+        return Some(LaterContact { lower: 0.0, is_open: false, met: None });
+    }
+    if never_face_each_other(span, sided) {
+        return None;
     }
     let mut from = find_separation_from(span, span.from, sampler)?;
-    for k in 0..MAX_RETRIES {
+    let duration = span.to - span.from;
+    let mut skipped = FIRST_RETRY_SHARE * duration;
+    loop {
         let part = span.restricted_to([from, span.to]);
         let SpanResult { planes, end } = prove_span(&part, sampler);
         let lower = planes.last().map_or(from, |plane| plane.time);
-        let met = match end {
+        let found = match end {
             SpanEnd::Free => return None,
-            SpanEnd::Met(time, met) => Some((time, met)),
-            SpanEnd::Indeterminate | SpanEnd::Stalled => None,
+            SpanEnd::Met(time, met) => {
+                LaterContact { lower, is_open: false, met: Some((time, met)) }
+            }
+            SpanEnd::Indeterminate => LaterContact { lower, is_open: false, met: None },
+            SpanEnd::Stalled => LaterContact { lower, is_open: true, met: None },
         };
-        if face_each_other(span, lower, sided, sampler) {
-            return Some(LaterContact { lower, met });
+        // Facets are separated where the search took its maximum number of steps: there is no contact to ignore.
+        if found.is_open || face_each_other(span, lower, sided, sampler) {
+            return Some(found);
         }
-        let more = (span.to - span.from) * FIRST_RETRY_SHARE * 2.0_f64.powi(k);
-        let after = met.map_or(lower, |(time, _)| time) + more;
+        let after = found.met.map_or(lower, |(time, _)| time) + skipped;
         from = find_separation_from(span, after, sampler)?;
+        skipped = (2.0 * skipped).min(MAX_RETRY_SHARE * duration);
     }
-    None
 }
 
 /// Returns the first sampled time, from `from` on, at which two facets are separated, refined by bisection. Returns
@@ -225,4 +243,125 @@ fn face_each_other(
     };
     (!sided[0] || is_towards(normal(f), relative_velocity))
         && (!sided[1] || is_towards(normal(g), -relative_velocity))
+}
+
+/// Checks whether it is proven that two facets do not face each other during a span, up to rounding errors: throughout
+/// a motion, from 0 to 1, at these velocities the plane of a facet with an outer side would approach the other facet by
+/// less than the error of a computed gap. This applies to facets that slide along each other.
+///
+/// The velocity of a point of a body is `u + w k x y`, where `y` leads from the axis to the point. The normal `n`
+/// rotates with its own body `i`. Therefore `n . k_i` is constant, and `n` differs from a vector along `k_i` by at most
+/// `|n x k_i|`.
+fn never_face_each_other(span: &Span<Facet>, sided: [bool; 2]) -> bool {
+    let noise = span.instant_at(span.from).bodies.noise().point_error();
+    let max_approach = GAP_NOISES * noise + span.error;
+    let approaches = |own: usize| {
+        let [piece, other] = [span.piece(own), span.piece(1 - own)];
+        let [a, b, c] = span.body(own).corners.map(|v| piece.start_pose.matrix() * v);
+        let Some(normal) = (b - a).cross(c - a).try_normalize() else { return true };
+        let velocity = piece.velocity - other.velocity;
+        // Distance of all points from the axis of each body. The pose may stretch its body slightly.
+        let [reach, other_reach] = [own, 1 - own].map(|k| {
+            let piece = span.piece(k);
+            piece.axis.cross(piece.arm).length() + MAX_STRETCH * span.body(k).reach()
+        });
+        let tilt = normal.cross(piece.axis).length();
+        let (along, other_tilt) = if piece.rate == 0.0 {
+            (normal.dot(velocity), normal.cross(other.axis).length())
+        } else {
+            let along =
+                normal.dot(piece.axis) * piece.axis.dot(velocity) + tilt * velocity.length();
+            (along, tilt + piece.axis.cross(other.axis).length())
+        };
+        let speed =
+            along + tilt * piece.rate.abs() * reach + other_tilt * other.rate.abs() * other_reach;
+        let rounding = ROUNDING
+            * (velocity.length() + piece.rate.abs() * reach + other.rate.abs() * other_reach);
+        speed + rounding > max_approach
+    };
+    (0..2).any(|own| sided[own] && !approaches(own))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use colltrans_convex::body::{ConvexPolyhedron, Pose};
+    use colltrans_kernel::motion::Motion;
+    use colltrans_solid::StartOverlap;
+    use colltrans_solid::body::Solid;
+
+    use super::super::super::MotionCast;
+    use super::super::super::clearance::MotionClearance;
+    use super::super::super::span::split_into_spans;
+    use super::*;
+
+    /// Finds the first later contact of two facets along a motion of the first one.
+    fn later_contact(facets: [&Facet; 2], motion: &Motion, rest: &Motion) -> Option<LaterContact> {
+        let spans = split_into_spans(facets, [motion, rest], 0.0);
+        find_later_contact(&spans[0], [true; 2], &mut FacetSampler::default())
+    }
+
+    /// The tip of a blade rises on a helix of 40 turns. In each turn it passes through a wall from behind, which is
+    /// ignored. In the turns after the thirtieth it also runs into the front of the wall.
+    #[test]
+    fn contact_after_many_ignored_ones_is_found() {
+        let tip =
+            Facet::new([[0.97, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.01]].map(DVec3::from));
+        let wall =
+            Facet::new([[0.5, -0.95, -0.5], [0.5, 1.5, 1.2], [0.5, -0.95, 1.5]].map(DVec3::from));
+        let [a, b, c] = wall.corners;
+        assert!((b - a).cross(c - a).x > 0.0);
+        let turn = glam::DQuat::from_rotation_z(-2.5);
+        let start = Pose::new(turn, DVec3::ZERO).expect("a pose");
+        let rest = Motion::at_rest(Pose::IDENTITY);
+        for turns in [2.0, 40.0] {
+            let motion = Motion::screw(start, DVec3::ZERO, DVec3::Z, turns * TAU, 1.0);
+            // The tip has no outer side.
+            let spans = split_into_spans([&tip, &wall], [&motion.expect("a motion"), &rest], 0.0);
+            let found = find_later_contact(&spans[0], [false, true], &mut FacetSampler::default());
+            let found = found.expect("the tip hits the front");
+            // The height of the tip when it first hits the front, found by samples of its two corners.
+            assert!(!found.is_open && (0.7..0.85).contains(&found.lower), "{found:?}");
+        }
+    }
+
+    /// Facets slide along each other at distances about as large as rounding errors. Their contacts are ignored, and
+    /// none of them may stop the motion or leave it open.
+    #[test]
+    fn facets_that_slide_within_rounding_errors_do_not_stop() {
+        let f = Facet::new([[0.1, 0.2, 0.0], [1.3, 0.1, 0.0], [0.3, 1.7, 0.0]].map(DVec3::from));
+        let g = Facet::new([[-4.1, -5.2, 0.0], [0.3, 5.7, 0.0], [6.3, -4.1, 0.0]].map(DVec3::from));
+        for tilt in [0.0, 0.3, 0.7] {
+            let turn = glam::DQuat::from_euler(glam::EulerRot::ZYX, tilt, 2.0 * tilt, 0.5 * tilt);
+            let up = turn * DVec3::Z;
+            let rest = Motion::at_rest(Pose::new(turn, DVec3::ZERO).expect("a pose"));
+            for k in 0..400 {
+                let start = Pose::new(turn, up * (1e-16 * f64::from(k))).expect("a pose");
+                let turned = Motion::rotation_about(start, DVec3::ZERO, up, 0.7);
+                let moved = Motion::translation(start, turn * DVec3::new(0.9, 0.4, 0.0));
+                for motion in [turned, moved] {
+                    let found = later_contact([&f, &g], &motion.expect("a motion"), &rest);
+                    assert!(found.is_none(), "{tilt} {k} {found:?}");
+                }
+            }
+        }
+    }
+
+    /// A cube that overlaps another one is rotated out of it. Two pairs of their faces slide along each other.
+    #[test]
+    fn coplanar_faces_of_overlapping_cubes_do_not_stop() {
+        let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
+        let solid = Solid::from_pieces(&[cube]).expect("a solid");
+        let start = Pose::from_translation(DVec3::Z * 0.75).expect("a pose");
+        let rest = Motion::at_rest(Pose::IDENTITY);
+        for (axis, turns) in [(DVec3::NEG_Y, 0.25), (DVec3::X, 0.25), (DVec3::NEG_Y, 0.1)] {
+            let motion = Motion::rotation_about(start, DVec3::Z, axis, turns * TAU);
+            let motion = motion.expect("a motion");
+            let bodies = (solid.with_motion(&motion), solid.with_motion(&rest));
+            let cast = MotionCast::between_any(bodies.0, bodies.1).expect("a cast");
+            let found = cast.with_start_overlap(StartOverlap::Ignore).clearance();
+            assert!(matches!(found, Ok(MotionClearance::Free(_))), "{axis} {turns} {found:?}");
+        }
+    }
 }

@@ -198,11 +198,11 @@ impl<'s, 'a> TreeSearch<'s, 'a> {
         self.steps.leaves += 1;
         if self.ignores_start_overlaps {
             let sided = [0, 1].map(|k| !self.trees[k].solid.is_open(triangles[k] as usize));
-            if let Some(LaterContact { lower, met }) =
+            if let Some(LaterContact { lower, is_open, met }) =
                 find_later_contact(&span, sided, &mut sampler)
             {
                 let met = met.map(|(time, met)| (time, triangles, met));
-                self.store_contact(EarliestContact { lower, triangles, is_open: false, met });
+                self.store_contact(EarliestContact { lower, triangles, is_open, met });
             }
             self.steps += sampler.steps;
             return;

@@ -24,6 +24,7 @@ use crate::numbers::{
 };
 use crate::outputs;
 use crate::report::{meet_verb, push_line, push_min_gap};
+use crate::solid::solid_bounds;
 
 pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     let PathArguments { robot, rows, scene, srdf, save_proof, .. } = arguments;
@@ -241,7 +242,7 @@ fn xml_escaped(value: &str) -> String {
 fn smallest_extent(cast: &PathCast<'_>) -> f64 {
     smaller_extent(cast.bodies().map(|placed| match placed {
         AnyPlaced::Convex(placed) => convex_bounds(placed.body),
-        AnyPlaced::Solid(placed) => placed.body.bounds(),
+        AnyPlaced::Solid(placed) => solid_bounds(placed.body),
     }))
 }
 

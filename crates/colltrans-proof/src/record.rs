@@ -543,10 +543,13 @@ impl FeatureRecord {
     }
 }
 
-/// Returns which of two solids are open, at least in part.
+/// Returns which of two solids are open, at least in part. A rounded surface is not, because it has a thickness.
 fn open_bodies(moving: &Solid, fixed: &Solid) -> Vec<&'static str> {
     let sides = [("moving", moving), ("fixed", fixed)].into_iter();
-    sides.filter(|(_, body)| !body.is_closed()).map(|(name, _)| name).collect()
+    sides
+        .filter(|(_, body)| !body.is_closed() && body.radius() == 0.0)
+        .map(|(name, _)| name)
+        .collect()
 }
 
 /// Returns the coordinates with -0 replaced by 0.

@@ -15,7 +15,7 @@
 
 use glam::{DMat3, DVec3};
 
-use colltrans_convex::body::{Aabb, ConvexPolyhedron, Pose};
+use colltrans_convex::body::{Aabb, ConvexPolyhedron, Placed, Pose};
 use colltrans_solid::body::Solid;
 use colltrans_solid::kinds::{AnyPlaced, ByKind};
 
@@ -31,18 +31,12 @@ const MAX_SCANNED_VERTICES: usize = 32;
 /// Maximum number of visited nodes of the tree of a solid.
 const MAX_TREE_BOXES: usize = 16;
 
-/// Returns a box that contains a placed body.
+/// Returns a box that contains a placed body and its input points: the box of its core, grown by its radius.
 pub(super) fn bounds_of_placed(placed: &AnyPlaced<'_>) -> Aabb {
-    match placed {
-        ByKind::Convex(placed) => bounds_of_convex(placed.body, &placed.pose),
-        ByKind::Solid(placed) => bounds_of_solid(placed.body, &placed.pose),
-    }
-}
-
-/// Returns a box that contains a convex body and its input points, rounded by the radius of the body.
-fn bounds_of_convex(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
-    let bounds = bounds_of_core(body, pose);
-    let radius = body.radius();
+    let (bounds, radius) = match placed {
+        ByKind::Convex(Placed { body, pose }) => (bounds_of_convex(body, pose), body.radius()),
+        ByKind::Solid(Placed { body, pose }) => (bounds_of_solid(body, pose), body.radius()),
+    };
     if radius == 0.0 {
         return bounds;
     }
@@ -51,7 +45,7 @@ fn bounds_of_convex(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
 }
 
 /// Returns a box that contains the core of a convex body and its input points.
-fn bounds_of_core(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
+fn bounds_of_convex(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
     let excess = body.input_excess();
     if body.vertices().len() <= MAX_SCANNED_VERTICES {
         return bounds_of_points(body.vertices(), pose, excess);
@@ -70,7 +64,7 @@ fn bounds_of_core(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
     enlarged_outwards(bounds, size, pose.translation(), excess)
 }
 
-/// Returns a box that contains a solid.
+/// Returns a box that contains the core of a solid.
 fn bounds_of_solid(solid: &Solid, pose: &Pose) -> Aabb {
     if solid.vertices().len() <= MAX_SCANNED_VERTICES {
         return bounds_of_points(solid.vertices(), pose, 0.0);

@@ -5,6 +5,8 @@
 //!   exactly. Common points are searched only if the distance of the surfaces may be 0, enclosed shells only if the
 //!   surfaces are apart.
 //! - A tolerance of a cast has no effect. Distances are those of the nominal bodies.
+//! - The search and the cover are about the cores of rounded bodies. Bounds and proofs are about the bodies: they are
+//!   those of the cores less both radii.
 
 use std::collections::HashMap;
 
@@ -26,9 +28,9 @@ use crate::solve::steps::SolidSteps;
 use colltrans_convex::answer::{CertificateError, Distance, Within, are_weights, impl_from_proofs};
 use colltrans_convex::body::{Features, Placed};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::pair::{Pair, PairBody};
+use colltrans_convex::pair::{Pair, PairBody, surface_points};
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::setting::{Setting, check_length};
+use colltrans_convex::setting::{Setting, TwoBodies, check_length};
 
 /// A proof of the distance of two solids, verified by [`Pair::verify`] without a search.
 ///
@@ -73,7 +75,8 @@ impl_from_proofs!(SolidPairProof { Distance(DistanceCertificate), Near(SolidNear
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct OverlapDepth {
-    /// Whether the nominal bodies have a common point, decided exactly.
+    /// Whether the nominal bodies have a common point, decided exactly. For rounded bodies, whether the distance of
+    /// the cores is certainly at most the sum of the radii.
     pub meets: bool,
     /// Least tolerance at which the bodies do not overlap, as in
     /// [`SolidCast::least_tolerance`](crate::SolidCast::least_tolerance). It is 0 if the bodies do not overlap, and
@@ -237,7 +240,8 @@ impl SolidPairSearch for Pair<'_, Solid> {
     fn prove_lower_bound(&self, found: ProofInput) -> Result<DistanceCertificate, QueryError> {
         let ProofInput { near, cover } = found;
         let Some(cover) = cover else { return Ok(DistanceCertificate::from_near(near)) };
-        Ok(match least_proven_distance(&pair_scene(self)?, &cover) {
+        let proven = least_proven_distance(&pair_scene(self)?, &cover);
+        Ok(match proven.map(|cores| self.bodies.less_radii(cores)) {
             Ok(lower) if lower > 0.0 => DistanceCertificate { lower, near, cover },
             _ => DistanceCertificate::from_near(near),
         })
@@ -250,24 +254,26 @@ impl SolidPairSearch for Pair<'_, Solid> {
     ) -> Result<((Within<Solid>, SolidSteps), ProofInput), QueryError> {
         check_length(length)?;
         let scene = pair_scene(self)?;
+        let [low, high] = self.bodies.core_gap_bounds(length);
         let until = SearchEnd {
             // Pairs beyond this distance count as farther. The margin exceeds the amount by which a bound may be
             // lowered.
-            beyond: length + 0.125 * scene.noise,
-            enough: length - triangle::LENGTH_NOISES * scene.noise,
+            beyond: high + 0.125 * scene.noise,
+            enough: low - triangle::LENGTH_NOISES * scene.noise,
         };
         let NearestFacets { spot, lower, cover, mut steps } =
             search_nearest(self, &scene, until, prove && until.beyond.is_finite());
-        let near = spot.map(|spot| spot.solid_near(&scene));
+        let near_of = |spot: NearestPoints| near_less_radii(&self.bodies, spot.solid_near(&scene));
+        let near = spot.map(near_of);
+        let lower = self.bodies.less_radii(lower);
         let meeting = || nested_shell(&scene).map(SolidNear::Meeting);
         let closer = near.map_or_else(meeting, |near| (near.distance() <= length).then_some(near));
         if let Some(near) = closer {
             return Ok(((Within::Closer(near), steps), ProofInput { near, cover: None }));
         }
         if lower > length {
-            let near = near.unwrap_or_else(|| {
-                NearestPoints::from_triangles(&scene, [0, 0]).solid_near(&scene)
-            });
+            let near =
+                near.unwrap_or_else(|| near_of(NearestPoints::from_triangles(&scene, [0, 0])));
             let answer = Within::Farther(SolidGap { gap: lower });
             return Ok(((answer, steps), ProofInput { near, cover }));
         }
@@ -291,8 +297,9 @@ impl SolidPairSearch for Pair<'_, Solid> {
         let origin = self.bodies.translations[0];
         let points = match *near {
             SolidNear::Meeting(place) => shared_points(&scene, place),
-            SolidNear::Points { triangles, weights, .. } => {
-                weighted_points(&scene, triangles, weights.map(DVec3::from_array))
+            SolidNear::Points { triangles, weights, distance } => {
+                let cores = weighted_points(&scene, triangles, weights.map(DVec3::from_array));
+                points_on_surfaces(&self.bodies, cores, distance, None)
             }
         };
         Ok(points.map(|point| point + origin))
@@ -369,10 +376,21 @@ fn prove_within(
     Ok((answer, Some(proof)))
 }
 
-/// Returns the nominal bodies in a common frame; its direction `z` has no meaning.
+/// Returns the cores of the nominal bodies in a common frame; its direction `z` has no meaning.
 fn pair_scene<'a>(pair: &Pair<'a, Solid>) -> Result<PairFrame<'a>, QueryError> {
     let setting = Setting::from_bodies(pair.bodies, DVec3::Z)?;
-    Ok(PairFrame::new(&setting, [0.0; 2], 0.0))
+    Ok(PairFrame::of_cores(&setting))
+}
+
+/// Lowers the upper bound of a distance of cores by both radii. Changes nothing if no body is rounded.
+fn near_less_radii(bodies: &TwoBodies<'_, Solid>, near: SolidNear) -> SolidNear {
+    match near {
+        SolidNear::Meeting(_) => near,
+        SolidNear::Points { triangles, weights, distance } => {
+            let distance = bodies.distance_less_radii(distance);
+            SolidNear::Points { triangles, weights, distance }
+        }
+    }
 }
 
 /// Searches for the nearest facets, and records the cover if `prove` is set.
@@ -406,9 +424,14 @@ fn distance_answer(
     let spot = nearest.spot.unwrap_or_else(|| NearestPoints::from_triangles(scene, [0, 0]));
     let (near, points) = match place {
         Some(place) => (SolidNear::Meeting(place), shared_points(scene, place)),
-        None => (spot.solid_near(scene), spot.witness_points(scene)),
+        None => {
+            let near = near_less_radii(&pair.bodies, spot.solid_near(scene));
+            let normal = (nearest.lower > 0.0).then_some(spot.nearest.normal);
+            let cores = spot.witness_points(scene);
+            (near, points_on_surfaces(&pair.bodies, cores, near.distance(), normal))
+        }
     };
-    let lower = if place.is_some() { 0.0 } else { nearest.lower };
+    let lower = if place.is_some() { 0.0 } else { pair.bodies.less_radii(nearest.lower).max(0.0) };
     let spot = (lower > 0.0).then_some(spot);
     let features = spot.map(|spot| spot.features(scene));
     Distance {
@@ -424,7 +447,19 @@ fn distance_answer(
     }
 }
 
-/// Returns the smallest distance that the entries of a cover prove.
+/// Returns the points of rounded bodies that correspond to nearest points of their cores at this distance of the
+/// bodies. Changes nothing if no body is rounded. `normal` replaces the direction between the points if that is not
+/// defined.
+fn points_on_surfaces(
+    bodies: &TwoBodies<'_, Solid>,
+    cores: [DVec3; 2],
+    distance: f64,
+    normal: Option<DVec3>,
+) -> [DVec3; 2] {
+    if bodies.is_rounded() { surface_points(bodies, cores, distance, normal) } else { cores }
+}
+
+/// Returns the smallest distance of the cores that the entries of a cover prove.
 ///
 /// # Errors
 /// Returns [`CertificateError::Cover`] if the cover does not fit the bodies, or for an entry that proves no positive
@@ -457,6 +492,7 @@ fn verify_near(scene: &PairFrame, near: &SolidNear) -> Result<f64, CertificateEr
             let [moving, fixed] = triangles;
             let proven = distance_of(scene, triangles, weights)
                 .ok_or(CertificateError::Facets { moving, fixed })?;
+            let proven = scene.setting.distance_less_radii(proven);
             if claimed >= proven {
                 Ok(proven)
             } else {
@@ -475,7 +511,7 @@ fn verify_cover(
     if *claimed == 0.0 && cover.is_empty() {
         return Ok(0.0);
     }
-    let proven = least_proven_distance(scene, cover)?;
+    let proven = scene.setting.less_radii(least_proven_distance(scene, cover)?);
     let met = matches!(near, SolidNear::Meeting(_));
     if !(0.0..=proven).contains(claimed) || met {
         return Err(CertificateError::Bound { proven, claimed: *claimed });

@@ -128,10 +128,10 @@ in the order of the file. Equal corners of STL triangles are merged, in the orde
 appearance. Features are named by them: a face is the whole polygon, an edge joins two corners.";
 
 const SHAPES: &str = "\
-Shapes instead of files of convex bodies: sphere:R, capsule:AX,AY,AZ,BX,BY,BZ,R (the ends of its
-axis), box:X,Y,Z, and box:X,Y,Z,R (rounded by R). They are exact. Spheres and boxes are centred.
-Features name the vertices, edges and faces of the point, the segment or the box. `info`, `path`
-and queries about parts that are not convex do not accept round shapes.";
+Shapes instead of files: sphere:R, capsule:AX,AY,AZ,BX,BY,BZ,R (the ends of its axis), box:X,Y,Z,
+and box:X,Y,Z,R (rounded by R). They are exact. Spheres and boxes are centred. Features name the
+vertices, edges and faces of the point, the segment or the box. `info` and `path` do not accept
+shapes, and `free` no round ones.";
 
 const UNITS_AND_POSES: &str = "\
 Units: lengths are in the unit of the files, which must be the same for both meshes (--moving-scale
@@ -438,7 +438,7 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
   BODY = {"points": [[x,y,z],...], "radius": R} (their convex hull, rounded by R)
        or {"sphere": R}, or {"capsule": [[x,y,z],[x,y,z]], "radius": R}
        or {"mesh": "path", "hull": true|false, "scale": FACTOR, "radius": R} (convex)
-       or {"solid": "path", "scale": FACTOR, "open": true|false} (any shape)
+       or {"solid": "path", "scale": FACTOR, "open": true|false, "radius": R} (any shape)
   (defaults of hull and scale: as --hull, and 1)
   POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, each optional. A quaternion with few
          digits is normalised, with a note in the result

@@ -17,8 +17,8 @@ use crate::solid;
 pub(crate) enum Key {
     /// A mesh file that becomes a convex body, whether its hull is taken, and the bits of its scale and radius.
     Mesh { path: PathBuf, hull: bool, scale: u64, radius: u64 },
-    /// A mesh file that need not be convex, the bits of its scale, and whether it may be open.
-    Solid { path: PathBuf, scale: u64, open: bool },
+    /// A mesh file that need not be convex, the bits of its scale and radius, and whether it may be open.
+    Solid { path: PathBuf, scale: u64, open: bool, radius: u64 },
     /// Points, by the exact bits of their coordinates, and the bits of the radius.
     Points { points: Vec<[u64; 3]>, radius: u64 },
 }

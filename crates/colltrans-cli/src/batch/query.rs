@@ -132,9 +132,6 @@ impl Batch {
             Some((points, radius)) => (Some(&points[..]), *radius),
             None => (points.as_deref(), source.radius.unwrap_or(0.0)),
         };
-        if solid.is_some() && source.radius.is_some() {
-            return Err("`radius` requires `points`, a `mesh` or a `capsule`".into());
-        }
         if open.is_some() && solid.is_none() {
             return Err("`open` requires a `solid`".into());
         }
@@ -149,7 +146,7 @@ impl Batch {
                 self.build_mesh(path, hull.unwrap_or(self.hull), checked_scale(scale)?, radius)
             }
             (None, None, Some(path)) if hull.is_none() => {
-                self.build_solid(path, checked_scale(scale)?, open.unwrap_or_default())
+                self.build_solid(path, checked_scale(scale)?, open.unwrap_or_default(), radius)
             }
             (None, None, Some(_)) => Err("`hull` requires a `mesh`".into()),
             _ => {
@@ -160,14 +157,15 @@ impl Batch {
     }
 
     /// Returns the solid of a mesh file.
-    fn build_solid(&self, path: &Path, scale: f64, open: bool) -> BuildResult {
+    fn build_solid(&self, path: &Path, scale: f64, open: bool, radius: f64) -> BuildResult {
         let path = self.folder.join(path);
-        let key = Key::Solid { path: path.clone(), scale: scale.to_bits(), open };
+        let [scale_bits, radius_bits] = [scale, radius].map(f64::to_bits);
+        let key = Key::Solid { path: path.clone(), scale: scale_bits, open, radius: radius_bits };
         self.cache.get_or_build(key, |_| {
             self.replaced_file.record_read(&path);
             let options = self.body.options(scale).with_open(open);
             let body = solid::Body::load(&[path], &options, || ())?;
-            Ok(Arc::new(Shape::Solid(body)))
+            Ok(Arc::new(Shape::Solid(body.rounded(radius)?)))
         })
     }
 

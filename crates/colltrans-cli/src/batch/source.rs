@@ -67,7 +67,7 @@ pub(crate) struct BodySource {
     pub(super) sphere: Option<f64>,
     /// Ends of the axis of a capsule.
     pub(super) capsule: Option<[[f64; 3]; 2]>,
-    /// Radius of a capsule, or by which points or a mesh are rounded.
+    /// Radius of a capsule, or by which points, a mesh or a solid are rounded.
     pub(super) radius: Option<f64>,
     pub(super) mesh: Option<PathBuf>,
     pub(super) solid: Option<PathBuf>,

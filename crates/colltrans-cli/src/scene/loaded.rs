@@ -19,7 +19,7 @@ use crate::distance::Accuracy;
 use crate::failure::{Code, Failure};
 use crate::inputs::{ReplacedFile, is_obstacle_list, read_text};
 use crate::numbers::smaller_extent;
-use crate::solid::Body;
+use crate::solid::{Body, solid_bounds};
 
 /// Rounding error of a length, relative to the size of the scene.
 const RELATIVE_ROUNDING: f64 = 1e-14;
@@ -241,7 +241,7 @@ fn as_solid(placed: AnyPlaced<'_>) -> Result<Placed<'_, Solid>, QueryError> {
 fn bounds_of(body: &AnyBody) -> Aabb {
     match body {
         AnyBody::Convex(body) => convex_bounds(body),
-        AnyBody::Solid(body) => body.bounds(),
+        AnyBody::Solid(body) => solid_bounds(body),
     }
 }
 

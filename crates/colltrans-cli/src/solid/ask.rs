@@ -150,7 +150,7 @@ impl<'a> PartsQuery<'a> {
     /// Returns an upper bound of the coordinates of both placed bodies.
     fn max_coordinate(&self) -> f64 {
         let bound = |k: usize| {
-            let bounds = self.bodies[k].solid().bounds();
+            let bounds = self.bodies[k].bounds();
             let corners = [bounds.low, bounds.high].map(DVec3::length);
             corners[0].max(corners[1]) + self.poses[k].translation().length()
         };

@@ -18,7 +18,7 @@ use std::path::PathBuf;
 use colltrans::glam::DVec3;
 use colltrans::record::FeaturesRecord;
 use colltrans::solid::{AsSolid, SolidReport};
-use colltrans::{ConvexPolyhedron, Pose, QueryError, Solid};
+use colltrans::{Aabb, ConvexPolyhedron, Pose, QueryError, Solid};
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyError, BodyOptions, Loaded, Note, load_solid};
 
@@ -88,6 +88,16 @@ impl Body {
         Self::from_pieces(vec![piece], Vec::new())
     }
 
+    /// Returns the body swept by a ball of the radius.
+    ///
+    /// # Errors
+    /// The radius is negative, not finite or out of range.
+    pub(crate) fn rounded(mut self, radius: f64) -> Result<Self, String> {
+        let whole = self.union.as_mut().unwrap_or(&mut self.pieces[0].solid);
+        *whole = whole.clone().rounded(radius).map_err(|error| error.to_string())?;
+        Ok(self)
+    }
+
     /// Builds the body of pieces, and their union if there are several.
     fn from_pieces(pieces: Vec<Piece>, notes: Vec<String>) -> Result<Self, String> {
         let union = match pieces.as_slice() {
@@ -121,13 +131,27 @@ impl Body {
         pieces + self.union.as_ref().map_or(0, Solid::memory_bytes)
     }
 
-    /// Returns the vertices at a pose, relative to `origin`, and the triangles.
+    /// Returns the bounding box, including the radius.
+    pub(crate) fn bounds(&self) -> Aabb {
+        solid_bounds(self.solid())
+    }
+
+    /// Returns the vertices at a pose, relative to `origin`, and the triangles. Those of a rounded solid form
+    /// polyhedra around its facets, or its core if it has too many.
     pub(crate) fn surface(&self, pose: &Pose, origin: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let solid = self.solid();
+        if solid.radius() != 0.0 && solid.triangles().len() <= MAX_DRAWN_FACETS {
+            return rounded_surface(solid, pose, origin);
+        }
         let offset = pose.translation() - origin;
         let placed = solid.vertices().iter().map(|&v| pose.matrix() * v + offset).collect();
         (placed, solid.triangles().to_vec())
     }
+}
+
+/// Returns the bounding box of a solid, including its radius.
+pub(crate) fn solid_bounds(solid: &Solid) -> Aabb {
+    solid.bounds().expanded(solid.radius())
 }
 
 /// Returns the failure of a query of two bodies. If the default tolerance removes a body completely, the message names the
@@ -158,6 +182,24 @@ pub(crate) fn query_failure(
 const DRAWN_BALL: [u32; 2] = [11, 24];
 /// Maximum number of vertices of a rounded body that is drawn with its radius.
 const MAX_DRAWN_BALLS: usize = 2000;
+
+/// Maximum number of facets of a rounded solid that is drawn with its radius.
+const MAX_DRAWN_FACETS: usize = 100;
+
+/// Returns the surfaces of polyhedra around the facets of a rounded solid, at a pose, relative to `origin`.
+fn rounded_surface(solid: &Solid, pose: &Pose, origin: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for corners in solid.triangles() {
+        let corners = corners.map(|v| solid.vertices()[v as usize]);
+        let facet = ConvexPolyhedron::from_points(&corners);
+        let Ok(facet) = facet.and_then(|facet| facet.rounded(solid.radius())) else { continue };
+        let (points, faces) = placed_surface(&facet, pose, origin);
+        let first = vertices.len() as u32;
+        triangles.extend(faces.iter().map(|face| face.map(|v| v + first)));
+        vertices.extend(points);
+    }
+    (vertices, triangles)
+}
 
 /// Returns the body that a picture draws: for a rounded body a polyhedron with vertices on its surface, or the core if
 /// that has too many vertices.
@@ -238,7 +280,7 @@ fn shell_counts(report: &SolidReport) -> String {
 
 /// Returns the extent of the smaller body.
 pub(crate) fn extent(bodies: [&Body; 2]) -> f64 {
-    smaller_extent(bodies.map(|body| body.solid().bounds()))
+    smaller_extent(bodies.map(Body::bounds))
 }
 
 /// Renumbers the vertices of features as in their files. Returns the names of the two files; `None` without features.

@@ -13,6 +13,7 @@ use crate::setting::error::QueryError;
 pub use convex::distance_from;
 pub use convex::nearest_points_in_world;
 use derive_where::derive_where;
+pub use rounded::surface_points;
 
 /// A kind of body for which a [`Pair`] can be answered. It is not meant to be implemented outside this
 /// workspace.

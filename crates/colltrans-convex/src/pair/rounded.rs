@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::convex::{MAX_BOUND_GAP, core_depth};
 use super::verify::depth_by_points;
 use crate::answer::{Depth, Distance, Enclosure, NearPoints, PlaneGap};
+use crate::body::VertexHull;
 use crate::setting::TwoBodies;
 use crate::setting::error::{QueryError, Stalled};
 use crate::solve::nearest::{Difference, NearestPairs, nearest_points};
@@ -48,8 +49,8 @@ pub(super) fn distance(bodies: &TwoBodies, cores: Distance) -> Distance {
 
 /// Returns the nearest points of rounded bodies from those of their cores, in the world: one point of both bodies if
 /// their `distance` is 0. `normal` replaces the direction between the points if that is not defined.
-pub(super) fn surface_points(
-    bodies: &TwoBodies,
+pub fn surface_points<B: VertexHull>(
+    bodies: &TwoBodies<'_, B>,
     cores: [DVec3; 2],
     distance: f64,
     normal: Option<DVec3>,
@@ -65,7 +66,12 @@ pub(super) fn surface_points(
 
 /// Returns a point of both bodies, on the segment from the point `on_moving` of the moving core along `normal` to a
 /// point of the fixed core at `distance`.
-fn common_point(bodies: &TwoBodies, on_moving: DVec3, distance: f64, normal: DVec3) -> DVec3 {
+fn common_point<B: VertexHull>(
+    bodies: &TwoBodies<'_, B>,
+    on_moving: DVec3,
+    distance: f64,
+    normal: DVec3,
+) -> DVec3 {
     let difference = bodies.moving.radius() - bodies.fixed.radius();
     on_moving + normal * (0.5 * (distance + difference)).clamp(0.0, distance)
 }

@@ -201,7 +201,7 @@ impl<B: VertexHull> TwoBodies<'_, B> {
     /// Returns an upper bound of the distance of the cores less both radii, rounded up; 0 if that is negative, and the
     /// bound itself if no body is rounded.
     #[inline]
-    pub(crate) fn distance_less_radii(&self, of_cores: f64) -> f64 {
+    pub fn distance_less_radii(&self, of_cores: f64) -> f64 {
         match self.core_gap_bounds(0.0)[0] {
             0.0 => of_cores,
             radii if of_cores <= radii => 0.0,
@@ -226,6 +226,16 @@ impl<B: VertexHull> TwoBodies<'_, B> {
         self.less_radii(self.input_core_gap(normal))
     }
 
+    /// Returns the points of the surfaces of the rounded bodies that correspond to points of their cores, in the
+    /// world: each moved by its body's radius towards the other body, along the unit vector `normal`.
+    #[inline]
+    pub fn surface_points(&self, [p, q]: [DVec3; 2], normal: DVec3) -> [DVec3; 2] {
+        if !self.is_rounded() {
+            return [p, q];
+        }
+        [p + normal * self.moving.radius(), q - normal * self.fixed.radius()]
+    }
+
     /// Returns a bound on the sum of the distances by which input points lie outside of their bodies, in
     /// world units.
     #[inline]
@@ -235,16 +245,6 @@ impl<B: VertexHull> TwoBodies<'_, B> {
 }
 
 impl TwoBodies<'_> {
-    /// Returns the points of the surfaces of the rounded bodies that correspond to points of their cores, in the
-    /// world: each moved by its body's radius towards the other body, along the unit vector `normal`.
-    #[inline]
-    pub(crate) fn surface_points(&self, [p, q]: [DVec3; 2], normal: DVec3) -> [DVec3; 2] {
-        if !self.is_rounded() {
-            return [p, q];
-        }
-        [p + normal * self.moving.radius(), q - normal * self.fixed.radius()]
-    }
-
     /// Returns the vertices of a pair, in the frames of the moving and of the fixed body.
     #[inline]
     pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {

@@ -192,7 +192,7 @@ impl BodyError {
             Self::Convex(_)
             | Self::NeedsRepair(_)
             | Self::ShapeName { .. }
-            | Self::Solid(SolidError::Rounded { .. }) => &[],
+            | Self::Solid(SolidError::Rounded { .. } | SolidError::Radius { .. }) => &[],
             Self::Solid(SolidError::Open { .. }) => &[BodyKind::Open, BodyKind::Hull],
             Self::Solid(_) => &[BodyKind::Hull],
         }
@@ -357,10 +357,11 @@ pub fn load_convex(
     }
 }
 
-/// Reads a file as a [`solid`], or builds the box that the name describes, see [`load_convex`].
+/// Reads a file as a [`solid`], or builds the shape that the name describes as a solid, see [`load_convex`]. A round
+/// shape becomes a rounded solid.
 ///
 /// # Errors
-/// The errors of [`read`](crate::read) and [`solid`]. Round shapes are no solids ([`SolidError::Rounded`]).
+/// The errors of [`read`](crate::read), [`solid`] and [`Solid::from_convex`].
 pub fn load_solid(
     path: impl AsRef<Path>,
     options: &BodyOptions,

@@ -519,7 +519,7 @@ struct Searched {
     stalled: Vec<usize>,
 }
 
-/// Converts a convex body to a solid. Returns `None` for a point or a segment.
+/// Converts a convex body to a solid. Returns `None` for a point, a segment or a rounded body.
 fn convert_to_solid(placed: AnyPlaced<'_>) -> Option<AnyPlaced<'_>> {
     match placed {
         ByKind::Convex(Placed { body, pose }) => {
@@ -544,7 +544,11 @@ fn is_nested_at_start(cast: &PathCast, pair: usize) -> Result<bool, QueryError> 
     let placed = |k: usize| -> Result<Placed<'_, Solid>, QueryError> {
         let (pose, _) = link_pair.chains[k].pose_and_rates(cast.path, 0, 0.0);
         Ok(match shapes[k].placed {
-            ByKind::Convex(placed) => AsSolid::as_solid(placed.body)?.at(pose),
+            // The core of a sphere or a capsule has no area.
+            ByKind::Convex(Placed { body, .. }) if body.radius() > 0.0 => {
+                body.as_surface()?.at(pose)
+            }
+            ByKind::Convex(Placed { body, .. }) => AsSolid::as_solid(body)?.at(pose),
             ByKind::Solid(placed) => placed.body.at(pose),
         })
     };

@@ -2,7 +2,7 @@
 //!
 //! - Piece 0 is the whole body.
 //! - The pieces of a solid are its tree nodes, each with the box of its facets, and then its facets. Boxes are slightly
-//!   enlarged, so that rounding leaves no point outside.
+//!   enlarged, so that rounding leaves no point outside. They have the radius of the solid.
 //! - Points that the hull of a piece excludes by rounding are within its `hull_error`, which counts as a position
 //!   error.
 
@@ -97,8 +97,13 @@ impl<'a> Shape<'a> {
     }
 }
 
-/// Builds a piece of a solid: a box or a facet.
+/// Builds a piece of a solid: a box or a facet, with the radius of the solid.
 fn build_piece(solid: &Solid, number: usize) -> ConvexPolyhedron {
+    build_core(solid, number).rounded(solid.radius()).expect("the radius of a solid")
+}
+
+/// Builds a box or a facet of a solid, without its radius.
+fn build_core(solid: &Solid, number: usize) -> ConvexPolyhedron {
     let nodes = solid.nodes();
     if let Some(node) = nodes.get(number) {
         let Aabb { low, high } = node.bounds;

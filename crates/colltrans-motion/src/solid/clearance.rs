@@ -115,7 +115,7 @@ impl MotionCast<'_, Solid> {
         let nominal = [0, 1].map(|k| {
             let solid = self.bodies()[k];
             let triangle = solid.triangles()[found.triangles[k] as usize];
-            Facet::new(triangle.map(|v| solid.vertices()[v as usize]))
+            Facet::new(triangle.map(|v| solid.vertices()[v as usize]), solid.radius())
         });
         let moved = |k: usize| {
             let [a, b] = [&nominal[k], &facets[k]];

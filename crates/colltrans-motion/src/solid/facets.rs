@@ -2,6 +2,8 @@
 //!
 //! - *Distance*: that of two triangles in closed form ([`triangle`]). Its plane is only a guess; a sample claims the
 //!   gap that the plane proves.
+//! - *Minimum gap and radii*: facets meet where points of their cores are not farther apart than the sum of the minimum
+//!   gap and both radii.
 //! - *Crossing*: an edge of one facet passes through the other. The signs of five volumes prove it if they hold for all
 //!   positions within the error of computed points.
 //! - *Error of a volume*: points of both facets have errors below `e`, from rounding and motion. The volume of vectors
@@ -50,7 +52,9 @@ impl Sampler<Facet> for FacetSampler {
         let noise = at.bodies.noise().point_error();
         let [f, g] = placed_corners(&at);
         let found = triangle::nearest_points(&f, &g, noise);
-        let gap = found.gap - GAP_NOISES * noise - motion.min_gap() - motion.position_error();
+        let gap = at.bodies.less_radii(found.gap - GAP_NOISES * noise)
+            - motion.min_gap()
+            - motion.position_error();
         let [p, q] = [at.bodies.moving.corners, at.bodies.fixed.corners];
         let points = [
             triangle::weighted_point(&p, found.weights[0]),
@@ -67,7 +71,7 @@ impl Sampler<Facet> for FacetSampler {
     {
         self.steps.looks += 1;
         let at = motion.instant_at(time);
-        if motion.min_gap() > 0.0 {
+        if least_core_gap(motion, &at) > 0.0 {
             let [f, g] = placed_corners(&at);
             let weights = triangle::nearest_points(&f, &g, at.bodies.noise().point_error()).weights;
             let met = FacetContactProof::Near { weights: weights.map(|w| w.to_array()) };
@@ -80,6 +84,14 @@ impl Sampler<Facet> for FacetSampler {
     }
 }
 
+/// Returns the minimum gap of the cores of two facets, rounded down: that of the facets plus their radii.
+fn least_core_gap<'a, C: RelativeMotion<'a, Body = Facet>>(
+    motion: &C,
+    at: &Instant<'a, C::Moved, Facet>,
+) -> f64 {
+    at.bodies.core_gap_bounds(motion.min_gap())[0]
+}
+
 /// Checks whether two facets are proven to meet at an instant, by the given proof.
 pub(super) fn is_contact_proven<'a, C: RelativeMotion<'a, Body = Facet>>(
     motion: &C,
@@ -87,18 +99,19 @@ pub(super) fn is_contact_proven<'a, C: RelativeMotion<'a, Body = Facet>>(
     met: FacetContactProof,
 ) -> bool {
     let (noise, [f, g]) = (at.bodies.noise().point_error(), placed_corners(at));
+    let core_gap = least_core_gap(motion, at);
     match met {
         FacetContactProof::Crossing { moving, edge } => {
             let (own, other) = if moving { (f, g) } else { (g, f) };
             let (k, off) = (edge as usize, noise + motion.position_error());
             k < 3
-                && motion.min_gap() == 0.0
+                && core_gap == 0.0
                 && segment_crosses_triangle(own[k], own[(k + 1) % 3], other, off)
         }
         FacetContactProof::Near { weights } => {
             let length = triangle::weighted_distance(&f, &g, weights.map(DVec3::from_array));
             weights.iter().all(|weights| are_weights(&weights[..]))
-                && length + LENGTH_NOISES * noise + motion.position_error() <= motion.min_gap()
+                && length + LENGTH_NOISES * noise + motion.position_error() <= core_gap
         }
         // These proofs are about whole solids, not about two facets.
         FacetContactProof::Inside { .. } | FacetContactProof::Contained { .. } => false,
@@ -307,9 +320,11 @@ mod tests {
     #[test]
     fn contact_after_many_ignored_ones_is_found() {
         let tip =
-            Facet::new([[0.97, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.01]].map(DVec3::from));
-        let wall =
-            Facet::new([[0.5, -0.95, -0.5], [0.5, 1.5, 1.2], [0.5, -0.95, 1.5]].map(DVec3::from));
+            Facet::new([[0.97, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.01]].map(DVec3::from), 0.0);
+        let wall = Facet::new(
+            [[0.5, -0.95, -0.5], [0.5, 1.5, 1.2], [0.5, -0.95, 1.5]].map(DVec3::from),
+            0.0,
+        );
         let [a, b, c] = wall.corners;
         assert!((b - a).cross(c - a).x > 0.0);
         let turn = glam::DQuat::from_rotation_z(-2.5);
@@ -330,8 +345,12 @@ mod tests {
     /// none of them may stop the motion or leave it open.
     #[test]
     fn facets_that_slide_within_rounding_errors_do_not_stop() {
-        let f = Facet::new([[0.1, 0.2, 0.0], [1.3, 0.1, 0.0], [0.3, 1.7, 0.0]].map(DVec3::from));
-        let g = Facet::new([[-4.1, -5.2, 0.0], [0.3, 5.7, 0.0], [6.3, -4.1, 0.0]].map(DVec3::from));
+        let f =
+            Facet::new([[0.1, 0.2, 0.0], [1.3, 0.1, 0.0], [0.3, 1.7, 0.0]].map(DVec3::from), 0.0);
+        let g = Facet::new(
+            [[-4.1, -5.2, 0.0], [0.3, 5.7, 0.0], [6.3, -4.1, 0.0]].map(DVec3::from),
+            0.0,
+        );
         for tilt in [0.0, 0.3, 0.7] {
             let turn = glam::DQuat::from_euler(glam::EulerRot::ZYX, tilt, 2.0 * tilt, 0.5 * tilt);
             let up = turn * DVec3::Z;

@@ -1,5 +1,5 @@
-//! Proves that two solids meet at one time: two facets cross, or a point is inside both. With a minimum gap, two facets
-//! must have points that are not farther apart than the gap.
+//! Proves that two solids meet at one time: two facets cross, or a point is inside both. With a minimum gap or a radius,
+//! the cores of two facets must have points that are not farther apart than the gap plus both radii.
 //!
 //! All pairs of facets that no plane separates at this time are tested, not only the pair that ended the search. This
 //! is necessary because two facets that have passed each other are separated again, for example those of a face that
@@ -54,7 +54,7 @@ pub(super) fn contact_state_at(
             stack.extend(pairs);
         }
     }
-    if frame.span.min_gap > 0.0 {
+    if frame.core_gap > 0.0 {
         return state;
     }
     match find_contained_point(&bodies, off) {

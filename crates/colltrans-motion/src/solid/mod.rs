@@ -1,6 +1,6 @@
 //! Motions of solids: the time at which two of them first meet.
 //!
-//! Both solids are shrunk by half of a tolerance, as for casts, so that a part that fits into another one can rotate in
+//! Both solids (of rounded ones the cores) are shrunk by half of a tolerance, as for casts, so that a part that fits into another one can rotate in
 //! it. An overlap at the start, including containment, is decided exactly. Afterwards the surfaces must meet before one
 //! solid can contain the other. The search finds the first contact of facets in both bounding volume trees and in
 //! time.
@@ -259,11 +259,13 @@ impl<'a> MotionCast<'a, Solid> {
             NearestPoints { triangles: found.triangles, nearest },
             self.nominal_frame(span, lower),
         );
-        let points = scene.as_ref().map(|scene| {
-            weighted_points(scene, spot.triangles, nearest.weights)
-                .map(|point| point + bodies.translations[0])
-        });
         let is_apart = nearest.gap > 0.0;
+        let points = scene.as_ref().map(|scene| {
+            let cores = weighted_points(scene, spot.triangles, nearest.weights);
+            let points =
+                if is_apart { bodies.surface_points(cores, nearest.normal) } else { cores };
+            points.map(|point| point + bodies.translations[0])
+        });
         let normal = is_apart.then_some(nearest.normal);
         let features = scene.filter(|_| is_apart).map(|scene| {
             let [moving, fixed] = spot.features(&scene);

@@ -40,18 +40,19 @@ pub(super) enum NodeContent {
     Facet(u32),
 }
 
-/// A facet as a convex body.
+/// A facet as a convex body, rounded like its solid.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Facet {
     pub(super) corners: [DVec3; 3],
     reach: f64,
+    radius: f64,
 }
 
 impl Facet {
-    /// Builds a facet from its corners.
-    pub(super) fn new(corners: [DVec3; 3]) -> Self {
+    /// Builds a facet from its corners and the radius of its solid.
+    pub(super) fn new(corners: [DVec3; 3], radius: f64) -> Self {
         let square = corners.iter().map(|v| v.length_squared()).fold(0.0, f64::max);
-        Self { corners, reach: square.sqrt().next_up() }
+        Self { corners, reach: square.sqrt().next_up(), radius }
     }
 }
 
@@ -65,6 +66,11 @@ impl VertexHull for Facet {
     fn reach(&self) -> f64 {
         self.reach
     }
+
+    #[inline]
+    fn radius(&self) -> f64 {
+        self.radius
+    }
 }
 
 impl VertexHull for SolidTree<'_> {
@@ -74,6 +80,10 @@ impl VertexHull for SolidTree<'_> {
 
     fn reach(&self) -> f64 {
         self.reach
+    }
+
+    fn radius(&self) -> f64 {
+        self.solid.radius()
     }
 }
 
@@ -118,7 +128,7 @@ impl<'a> SolidTree<'a> {
     /// Returns a facet by its index, shrunk.
     pub(super) fn facet(&self, triangle: u32) -> Facet {
         let corners = self.solid.triangles()[triangle as usize].map(|v| self.vertices[v as usize]);
-        Facet::new(corners)
+        Facet::new(corners, self.solid.radius())
     }
 
     /// Builds the nodes and their boxes.

@@ -138,15 +138,16 @@ fn is_contact_proven(
     }
     let bodies = span.instant_at(*time).bodies;
     let off = bodies.noise().point_error() + span.error;
+    let is_without_gap = bodies.core_gap_bounds(span.min_gap) == [0.0; 2];
     match *met {
         FacetContactProof::Inside { point } => {
-            return span.min_gap == 0.0
+            return is_without_gap
                 && inside::is_inside_both(&bodies, off, DVec3::from_array(point));
         }
         FacetContactProof::Contained { moving, weights } => {
             let k = usize::from(!moving);
             let facet = span.body(k).facet(triangles[k]).corners;
-            return span.min_gap == 0.0
+            return is_without_gap
                 && are_weights(&weights)
                 && inside::is_point_inside(&bodies, off, moving, &facet, weights);
         }

@@ -53,6 +53,8 @@ pub(super) struct SpanFrame<'s, 'a> {
     pub(super) span: &'s Span<'a, SolidTree<'a>>,
     /// Error bound of coordinates along a unit normal, in world units.
     coordinate_error: f64,
+    /// Minimum gap of the cores, rounded up: that of the solids plus their radii.
+    pub(super) core_gap: f64,
     /// Whether both bodies have the same angular velocity and axis, up to rounding. In the frame that rotates with
     /// them, one then only translates relative to the other.
     has_common_rotation: bool,
@@ -164,7 +166,8 @@ impl<'s, 'a> SpanFrame<'s, 'a> {
         let size = span.body(0).reach() + span.body(1).reach();
         let has_common_rotation =
             arc::has_same_spin(span) && axis_distance <= MAX_AXIS_DISTANCE * size;
-        Self { span, coordinate_error, has_common_rotation }
+        let [_, core_gap] = start.core_gap_bounds(span.min_gap);
+        Self { span, coordinate_error, core_gap, has_common_rotation }
     }
 
     /// Computes the poses of both bodies at a time.
@@ -243,9 +246,9 @@ impl Window<'_, '_, '_> {
     #[inline]
     fn separates_along(&self, normal: DVec3) -> bool {
         let (frame, length) = (self.frame, normal.abs().element_sum());
-        let min_gap = frame.span.min_gap;
+        let core_gap = frame.core_gap;
         let gap_margin =
-            if min_gap > 0.0 { min_gap * normal.length() * (1.0 + 1e-12) } else { 0.0 };
+            if core_gap > 0.0 { core_gap * normal.length() * (1.0 + 1e-12) } else { 0.0 };
         let coordinate_error = frame.coordinate_error * length + gap_margin;
         let shares = [0, 1].map(|k| normal.dot(self.frame.piece(k).axis));
         let mut gaps = [0.0; 2];
@@ -326,7 +329,7 @@ impl Window<'_, '_, '_> {
     /// Checks whether a plane separates both parts while both bodies carry it along. Returns `false` unless the bodies
     /// have the same angular velocity and axis, and the gap at the start exceeds the loss.
     fn is_separated_by_carried(&self, plane: PlaneName) -> bool {
-        let SpanFrame { span, coordinate_error, has_common_rotation } = *self.frame;
+        let SpanFrame { span, coordinate_error, core_gap, has_common_rotation } = *self.frame;
         if !has_common_rotation {
             return false;
         }
@@ -337,7 +340,7 @@ impl Window<'_, '_, '_> {
         let Some(normal) = begin.plane_normal(plane) else { return false };
         let [high, _] = placed[0][0].max_coordinates(normal, 0.0);
         let [low, _] = placed[1][0].max_coordinates(-normal, 0.0);
-        let gap_margin = span.min_gap.max(0.0) * normal.length() * (1.0 + 1e-12);
+        let gap_margin = core_gap.max(0.0) * normal.length() * (1.0 + 1e-12);
         let gap = normal.dot(start.offset)
             - low
             - high

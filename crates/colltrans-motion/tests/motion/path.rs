@@ -395,6 +395,53 @@ fn cube_lowered_flush_onto_step_reports_contact() {
     }
 }
 
+/// A ball and a box are lowered onto a step, which may be rounded.
+#[test]
+fn rounded_bodies_meet_rounded_solids_at_closed_form_times() {
+    let lift = Frame {
+        parent: None,
+        origin: at(1.0, 5.0, 0.0),
+        joint: Joint::Sliding(DVec3::new(0.0, -1.0, 0.0)),
+    };
+    let mechanism = Mechanism::new(vec![lift]).expect("a lift");
+    let path = JointPath::at_unit_times(vec![vec![0.0], vec![8.0]]).expect("a path");
+    let pieces = [cuboid([0.0; 3], [3.0, 1.0, 1.0]), cuboid([0.0, 1.0, 0.0], [1.0, 3.0, 1.0])];
+    let step = Solid::from_pieces(&pieces).expect("a solid");
+    let ball = ConvexPolyhedron::sphere(DVec3::ZERO, 0.5).expect("a ball");
+    let cube = cuboid([-0.5; 3], [0.5; 3]);
+    for (body, radius, x, meets) in [
+        (&ball, 0.0, 0.5, 0.1875),
+        (&ball, 0.0, 2.0, 0.4375),
+        // Beside the edge by 0.3.
+        (&ball, 0.0, 1.3, 0.2),
+        (&ball, 0.25, 0.5, 0.15625),
+        (&cube, 0.25, 2.25, 0.40625),
+        (&cube, 0.25, 0.5, 0.15625),
+    ] {
+        let cast = |step| {
+            let bodies = vec![
+                PathBody { frame: Some(0), placed: body.at(at(x - 1.0, 0.0, 0.5)).into() },
+                PathBody { frame: None, placed: Solid::at(step, Pose::IDENTITY).into() },
+            ];
+            PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast")
+        };
+        let rounded = step.clone().rounded(radius).expect("a solid");
+        let found = expect_contact(cast(&rounded).first_contact().expect("an answer"));
+        assert_eq!(cast(&rounded).verify(&found.proof), Ok([found.lower, found.upper]));
+        let is_close = found.lower <= meets + 1e-12 && meets <= found.upper + 1e-12;
+        assert!(is_close && found.upper - found.lower < 1e-9, "{x}: {found:?}");
+        let larger = step.clone().rounded(radius + 1e-3).expect("a solid");
+        assert!(cast(&larger).verify(&found.proof).is_err(), "{x}");
+    }
+    // The core of a ball inside a step overlaps at the start.
+    let bodies = vec![
+        PathBody { frame: None, placed: ball.at(at(0.5, 0.5, 0.5)).into() },
+        PathBody { frame: Some(0), placed: step.at(at(-1.0, -5.0, 0.0)).into() },
+    ];
+    let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
+    assert!(matches!(cast.first_contact(), Ok(PathOutcome::Overlapping(_))));
+}
+
 #[test]
 fn prisms_with_equal_cross_sections_have_proven_contact() {
     let solid = |low: [f64; 3], high: [f64; 3]| {

@@ -120,6 +120,91 @@ fn convex_bodies_as_solids_match_convex_search() {
     assert!(contacts > 60 && free > 30 && most < 1e-11, "{contacts} {free} {most:e}");
 }
 
+/// Rounded bodies as solids have the answers of the convex search.
+#[test]
+fn rounded_bodies_as_solids_match_convex_search() {
+    let (mut contacts, mut free) = (0, 0);
+    for seed in 0..cases(120) {
+        let random = &mut Random::new(seed);
+        let body = |random: &mut Random| {
+            let core = match random.index(3) {
+                0 => ConvexPolyhedron::from_points(&[random.vector() * 0.3]),
+                1 => ConvexPolyhedron::from_points(&[random.vector(), random.vector()]),
+                _ => Ok(hull(8, random)),
+            };
+            let radius = if random.one_in(4) { 0.0 } else { random.range(0.05, 0.8) };
+            core.and_then(|core| core.rounded(radius)).expect("a body")
+        };
+        let [p, q] = [body(random), body(random)];
+        if p.radius() + q.radius() == 0.0 {
+            continue;
+        }
+        let from = random.direction() * random.range(3.5, 6.0);
+        let pose = Pose::new(random.rotation(), from).expect("a pose");
+        let way = (random.vector() * 1.5 - from) * random.range(0.5, 2.0);
+        let spin = random.direction() * random.range(0.1, 6.0);
+        let along = Motion::free_flight(pose, from, way, spin).expect("a motion");
+        let rest = rest_motion();
+        let convex = MotionCast::new(p.with_motion(&along), q.with_motion(&rest)).expect("a cast");
+        let cast = MotionCast::between_any(p.with_motion(&along), q.with_motion(&rest));
+        let cast = cast.and_then(|cast| cast.with_tolerance(0.0)).expect("a cast");
+        match (convex.first_contact().expect("an answer"), checked_outcome(&cast, [&along, &rest]))
+        {
+            (MotionOutcome::Contact(exact), MotionOutcome::Contact(found)) => {
+                contacts += 1;
+                assert!(found.lower <= exact.upper && exact.lower <= found.upper, "{seed}");
+                assert!(found.upper - found.lower < 1e-9, "{seed}: {found:?}");
+                let [a, b] = found.points.expect("points");
+                assert!((a - b).length() < 1e-7, "{seed}: {found:?}");
+            }
+            (MotionOutcome::Free(_), MotionOutcome::Free(_)) => free += 1,
+            (MotionOutcome::Overlapping(_), MotionOutcome::Overlapping(_)) => {}
+            (exact, found) => panic!("{seed}: {exact:?} {found:?}"),
+        }
+    }
+    assert!(contacts > cases(20) && free > cases(5), "{contacts} {free}");
+}
+
+/// A ball swings against the face and the edge of a mesh that is not convex.
+#[test]
+fn swinging_ball_meets_face_and_edge_at_closed_form_times() {
+    let ball = ConvexPolyhedron::sphere(DVec3::X * 2.0, 0.3).expect("a ball");
+    let quarter = Motion::rotation_about(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, FRAC_PI_2);
+    let (quarter, rest) = (quarter.expect("a motion"), rest_motion());
+    let wall = |left: f64| {
+        let near = colltrans_testkit::bodies::block([left, 1.0, -1.0], [4.0, 3.0, 1.0]);
+        let far = colltrans_testkit::bodies::block([3.0, 2.0, -1.0], [9.0, 9.0, 1.0]);
+        Solid::from_pieces([&near, &far]).expect("a solid")
+    };
+    // The edge is at (1.9, 1): the law of cosines.
+    let edge = DVec3::new(1.9, 1.0, 0.0);
+    let cosine = (4.0 + edge.length_squared() - 0.09) / (4.0 * edge.length());
+    let at_edge = edge.y.atan2(edge.x) - cosine.acos();
+    for (left, radius, angle) in [(-1.0, 0.0, 0.35_f64.asin()), (-1.0, 0.2, 0.25_f64.asin())] {
+        let wall = wall(left).rounded(radius).expect("a solid");
+        let cast = MotionCast::between_any(ball.with_motion(&quarter), wall.with_motion(&rest));
+        let cast = cast.and_then(|cast| cast.with_tolerance(0.0)).expect("a cast");
+        let found = expect_contact(checked_outcome(&cast, [&quarter, &rest]));
+        let exact = angle / FRAC_PI_2;
+        assert!(found.lower <= exact + 1e-12 && exact <= found.upper + 1e-12, "{found:?} {exact}");
+        assert!(found.upper - found.lower < 1e-11, "{found:?}");
+    }
+    let wall = wall(1.9);
+    let cast = MotionCast::between_any(ball.with_motion(&quarter), wall.with_motion(&rest));
+    let cast = cast.and_then(|cast| cast.with_tolerance(0.0)).expect("a cast");
+    let outcome = cast.certified_first_contact().expect("an answer");
+    let found = expect_contact(checked_outcome(&cast, [&quarter, &rest]));
+    let exact = at_edge / FRAC_PI_2;
+    assert!(found.lower <= exact + 1e-12 && exact <= found.upper + 1e-12, "{found:?} {exact}");
+    // The proof is refused for other radii.
+    for radius in [0.3 + 1e-6, 0.3 - 1e-6] {
+        let other = ConvexPolyhedron::sphere(DVec3::X * 2.0, radius).expect("a ball");
+        let other = MotionCast::between_any(other.with_motion(&quarter), wall.with_motion(&rest));
+        let other = other.and_then(|cast| cast.with_tolerance(0.0)).expect("a cast");
+        assert!(other.verify(outcome.proof()).is_err(), "{radius}");
+    }
+}
+
 #[test]
 fn screw_in_nut_is_free_at_its_pitch_only() {
     let bolt = solid(&thread([1.0, 0.1, 0.5], [0.0, 2.0], [24, 24], None));

@@ -29,6 +29,15 @@ pub(super) struct StoredBody {
 pub(super) enum BodyFile {
     Convex(BodyRecord),
     Pieces(Vec<PieceRecord>),
+    Rounded(RoundedRecord),
+}
+
+/// A rounded solid in a file: the union of pieces, swept by a ball.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RoundedRecord {
+    pieces: Vec<PieceRecord>,
+    radius: f64,
 }
 
 impl StoredBody {
@@ -37,15 +46,15 @@ impl StoredBody {
         Self { body: AnyBody::from(body.clone()), pieces: Vec::new() }
     }
 
-    /// Stores a solid that is the union of pieces, as if read from a file. Returns an error if the result has
-    /// other facets than `expected`.
+    /// Stores a solid that is the union of pieces, as if read from a file, with the radius of `expected`. Returns an
+    /// error if the result has other facets than `expected`.
     pub(super) fn from_pieces(
         pieces: &[&Solid],
         expected: &Solid,
         body: usize,
     ) -> Result<Self, ProofFileError> {
         let pieces = pieces.iter().map(|piece| PieceRecord::of_solid(piece)).collect();
-        let made = Self::from_piece_records(pieces, body)?;
+        let made = Self::from_piece_records(pieces, expected.radius(), body)?;
         if made.has_same_facets(expected) {
             Ok(made)
         } else {
@@ -61,13 +70,20 @@ impl StoredBody {
         };
         // For a union, each connected component is a piece of its own.
         let ways = [|of: &Solid| vec![PieceRecord::of_solid(of)], PieceRecord::components];
-        let mut made =
-            ways.iter().filter_map(|pieces| Self::from_piece_records(pieces(solid), body).ok());
+        let mut made = ways.iter().filter_map(|pieces| {
+            Self::from_piece_records(pieces(solid), solid.radius(), body).ok()
+        });
         made.find(|made| made.has_same_facets(solid)).ok_or(ProofFileError::Changed { body })
     }
 
-    fn from_piece_records(pieces: Vec<PieceRecord>, body: usize) -> Result<Self, ProofFileError> {
-        Ok(Self { body: AnyBody::from(union_of_pieces(&pieces, body)?), pieces })
+    fn from_piece_records(
+        pieces: Vec<PieceRecord>,
+        radius: f64,
+        body: usize,
+    ) -> Result<Self, ProofFileError> {
+        let rounded = union_of_pieces(&pieces, body)?.rounded(radius);
+        let made = rounded.map_err(|error| ProofFileError::Body { body, error: error.into() })?;
+        Ok(Self { body: AnyBody::from(made), pieces })
     }
 
     pub(super) fn from_file(file: BodyFile, body: usize) -> Result<Self, ProofFileError> {
@@ -78,7 +94,10 @@ impl StoredBody {
                     made.map_err(|error| ProofFileError::Body { body, error: error.into() })?;
                 Ok(Self { body: AnyBody::from(made), pieces: Vec::new() })
             }
-            BodyFile::Pieces(pieces) => Self::from_piece_records(pieces, body),
+            BodyFile::Pieces(pieces) => Self::from_piece_records(pieces, 0.0, body),
+            BodyFile::Rounded(RoundedRecord { pieces, radius }) => {
+                Self::from_piece_records(pieces, radius, body)
+            }
         }
     }
 
@@ -90,6 +109,10 @@ impl StoredBody {
     pub(super) fn to_file(&self) -> BodyFile {
         match &self.body {
             ByKind::Convex(body) => BodyFile::Convex(BodyRecord::from_body(body)),
+            ByKind::Solid(solid) if solid.radius() != 0.0 => {
+                let (pieces, radius) = (self.pieces.clone(), solid.radius());
+                BodyFile::Rounded(RoundedRecord { pieces, radius })
+            }
             ByKind::Solid(_) => BodyFile::Pieces(self.pieces.clone()),
         }
     }
@@ -102,7 +125,7 @@ impl StoredBody {
         }
     }
 
-    /// Checks whether the body has the same facets as a solid, in any order.
+    /// Checks whether the body has the same radius as a solid, and the same facets in any order.
     fn has_same_facets(&self, other: &Solid) -> bool {
         self.as_solid().is_some_and(|solid| have_same_facets(solid, other))
     }
@@ -200,7 +223,7 @@ fn union_of_pieces(pieces: &[PieceRecord], body: usize) -> Result<Solid, ProofFi
     Solid::from_pieces(&solids).map_err(refused)
 }
 
-/// Checks whether two solids have the same facets, in any order.
+/// Checks whether two solids have the same radius, and the same facets in any order.
 fn have_same_facets(a: &Solid, b: &Solid) -> bool {
     let facets = |solid: &Solid| {
         // Replace -0 by 0.
@@ -213,5 +236,5 @@ fn have_same_facets(a: &Solid, b: &Solid) -> bool {
         all.sort_unstable();
         all
     };
-    a.is_closed() == b.is_closed() && facets(a) == facets(b)
+    a.is_closed() == b.is_closed() && a.radius() == b.radius() && facets(a) == facets(b)
 }

@@ -277,12 +277,48 @@ fn nearest_of_many_spheres_is_that_of_the_closed_form() {
     }
 }
 
+/// Rounded solids and rounded convex bodies among each other: the boxes include the radii, and each answer is that of
+/// querying all obstacles one by one.
 #[test]
-fn rounded_bodies_are_refused_among_solids() {
+fn rounded_solids_match_queries_of_single_obstacles() {
+    let random = &mut Random::new(0x2ad);
+    let poses = grid_poses(4, random);
     let mut scene = Obstacles::new();
-    let cube = cuboid(DVec3::ZERO, DVec3::ONE);
-    scene.insert(Solid::from_convex(&cube).expect("a solid"), Pose::IDENTITY);
-    let ball = ConvexPolyhedron::sphere(DVec3::ZERO, 1.0).expect("a sphere");
-    let refused = SceneQuery::new(ball.at(at(3.0, 0.0, 0.0)), &scene);
-    assert!(refused.is_err_and(|error| error.to_string().contains("rounded by a radius of 1")));
+    let cube = cuboid(DVec3::ZERO, DVec3::splat(0.25));
+    let bar = cuboid(DVec3::ZERO, DVec3::new(0.1, 0.1, 0.5));
+    let cross = Solid::from_pieces([&cube, &bar]).expect("a solid");
+    let mut ids = Vec::new();
+    for (k, pose) in poses.iter().enumerate() {
+        let pose = Pose::from_matrix(pose.matrix(), pose.translation() * 2.0).expect("a pose");
+        let radius = [0.0, 0.125, 0.75][k % 3];
+        let id = if k % 2 == 0 {
+            scene.insert(cross.clone().rounded(radius).expect("a solid"), pose)
+        } else {
+            scene.insert(cube.clone().rounded(radius).expect("a body"), pose)
+        };
+        ids.push(id);
+    }
+    let ball = ConvexPolyhedron::sphere(DVec3::ZERO, 0.25).expect("a ball");
+    for _ in 0..cases(40) {
+        let start = at(random.range(-2.0, 8.0), random.range(-2.0, 8.0), random.range(8.0, 9.0));
+        let query = SceneQuery::new(ball.at(start), &scene).expect("solids");
+        let nearest = query.certified_nearest().expect("an answer");
+        let (nearest, proof) = nearest.expect("there are some");
+        assert!(query.verify(&proof).is_ok());
+        let bounds = ids.iter().map(|id| match query.pair_with(*id).expect("a pair") {
+            ByKind::Convex(pair) => pair.distance().expect("a distance").bounds(),
+            ByKind::Solid(pair) => pair.distance().expect("a distance").bounds(),
+        });
+        let least = bounds.map(|[_, upper]| upper).fold(f64::INFINITY, f64::min);
+        assert_eq!(nearest.distance.upper(), least);
+        let direction = DVec3::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0), -1.0);
+        let (found, proof) = query.certified_clearance(direction).expect("an answer");
+        assert!(query.verify(&proof).is_ok());
+        let single = ids.iter().map(|id| match query.cast_with(*id, direction).expect("a cast") {
+            ByKind::Convex(cast) => cast.clearance().expect("an answer").distance(),
+            ByKind::Solid(cast) => cast.clearance().expect("an answer").distance(),
+        });
+        let least = single.map(|one| one.unwrap_or(f64::INFINITY)).fold(f64::INFINITY, f64::min);
+        assert!((found.lower - least).abs() < 1e-9 || found.lower == least, "{found:?} {least}");
+    }
 }

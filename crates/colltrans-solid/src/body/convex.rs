@@ -1,5 +1,6 @@
 //! Convex polyhedra as solids, built on first use and stored with the polyhedron.
 
+use super::round::check_is_not_rounded;
 use super::{AsSolid, Solid, SolidError};
 use colltrans_convex::body::{ConvexPolyhedron, DerivedData};
 
@@ -19,32 +20,42 @@ impl Solid {
     ///
     /// A flat polygon becomes a surface with two sides and no volume. It overlaps bodies that contain it.
     ///
+    /// A rounded body becomes a rounded solid. Of a sphere or a capsule, the core is one facet without area.
+    ///
     /// # Errors
-    /// Returns [`SolidError::NoArea`] for a point or a segment, and [`SolidError::Rounded`] for a rounded body.
+    /// Returns [`SolidError::NoArea`] for a point or a segment without radius.
     pub fn from_convex(body: &ConvexPolyhedron) -> Result<Self, SolidError> {
-        check_is_polyhedron(body)?;
-        check_area(body)?;
-        let facets: Vec<Vec<u32>> =
-            (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
-        Ok(Self::from_mesh(body.vertices(), &facets)?.with_input_numbers(body.input_indices()))
+        if body.radius() == 0.0 {
+            check_area(body)?;
+        }
+        Self::with_any_dimension(body)
+    }
+
+    /// Builds a solid from a convex polyhedron. The core of a point or a segment is one facet without area.
+    fn with_any_dimension(body: &ConvexPolyhedron) -> Result<Self, SolidError> {
+        let core = match body.dimension() {
+            0 => Self::from_degenerate_facet(body, [0, 0, 0]),
+            1 => Self::from_degenerate_facet(body, [0, 1, 1]),
+            _ => {
+                let facets: Vec<Vec<u32>> = (0..body.face_count() as u32)
+                    .map(|f| body.face_vertices(f).collect())
+                    .collect();
+                Self::from_mesh(body.vertices(), &facets)?.with_input_numbers(body.input_indices())
+            }
+        };
+        core.rounded(body.radius())
     }
 }
 
 impl AsSolid for ConvexPolyhedron {
     fn as_solid(&self) -> Result<&Solid, SolidError> {
-        check_is_polyhedron(self)?;
+        check_is_not_rounded(self.radius())?;
         check_area(self)?;
         self.as_surface()
     }
 
     fn as_surface(&self) -> Result<&Solid, SolidError> {
-        check_is_polyhedron(self)?;
-        let make = || match self.dimension() {
-            0 => Ok(Solid::from_degenerate_facet(self, [0, 0, 0])),
-            1 => Ok(Solid::from_degenerate_facet(self, [0, 1, 1])),
-            _ => Solid::from_convex(self),
-        };
-        let made = self.kept().get_or_make(|| StoredSolid(make()));
+        let made = self.kept().get_or_make(|| StoredSolid(Solid::with_any_dimension(self)));
         let StoredSolid(made) = made.expect("no other type is stored with a convex polyhedron");
         made.as_ref().map_err(Clone::clone)
     }
@@ -56,10 +67,4 @@ fn check_area(body: &ConvexPolyhedron) -> Result<(), SolidError> {
         1 => Err(SolidError::NoArea { what: "segment" }),
         _ => Ok(()),
     }
-}
-
-/// Returns an error for a rounded body, which is no solid.
-fn check_is_polyhedron(body: &ConvexPolyhedron) -> Result<(), SolidError> {
-    let radius = body.radius();
-    if radius == 0.0 { Ok(()) } else { Err(SolidError::Rounded { radius }) }
 }

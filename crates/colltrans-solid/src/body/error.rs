@@ -23,13 +23,21 @@ pub enum SolidError {
         /// `point` or `segment`.
         what: &'static str,
     },
-    /// The body is rounded, and the query is about solids, which are polyhedra.
+    /// The body is rounded, and the operation is defined for polyhedra only.
     #[error(
-        "a body that is rounded by a radius of {radius:?} is no solid; casts, distances, depths, motions and scenes \
-         of convex bodies accept it"
+        "a body is rounded by a radius of {radius:?}, for which this is not defined; casts, distances, motions, \
+         paths and scenes accept it"
     )]
     Rounded {
         /// Radius of the body.
+        radius: f64,
+    },
+    /// The radius of a rounded body is negative, not finite or out of range, or the feature `min-gap` is missing.
+    #[error(
+        "invalid radius {radius:?}; accepted: 0, or 2^-200 to 2^200 with the feature `min-gap`"
+    )]
+    Radius {
+        /// The radius as given.
         radius: f64,
     },
     /// The mesh has more vertices, facets or corners than 32-bit indices support.

@@ -4,6 +4,7 @@
 //! - [`shells`] finds its connected parts, and reverses those that are inside out.
 //! - [`tree`] builds the tree of boxes that searches descend.
 //! - [`shrink`] computes offsets on first use, and [`self_intersection`] finds walls that are too thin for an offset.
+//! - [`round`] sweeps a solid by a ball: its radius.
 //! - [`faces`] joins triangles to polygonal faces on first use; [`bodies`] assigns cavities to the shells around
 //!   them.
 
@@ -17,6 +18,7 @@ mod faces;
 mod openness;
 mod polygon;
 mod report;
+mod round;
 mod self_intersection;
 mod shells;
 mod shrink;
@@ -88,6 +90,8 @@ pub struct Solid {
     nodes: Vec<Node>,
     spans: Vec<ShellBounds>,
     reach: f64,
+    /// Radius of the ball that sweeps the surface and its interior; see [`Self::rounded`].
+    radius: f64,
     /// Number of vertices and of facets of the input.
     input_counts: [u32; 2],
     report: SolidReport,
@@ -110,18 +114,18 @@ impl InputNumbered for Solid {
 
 /// A body that can be used as a [`Solid`] in queries and as a piece of a solid.
 pub trait AsSolid: InputNumbered {
-    /// Returns the body as a solid. The surface of a convex polyhedron is built on first use and stored with it. A
-    /// flat polygon becomes a surface with two sides and no volume.
+    /// Returns the body as a solid without a radius. The surface of a convex polyhedron is built on first use and
+    /// stored with it. A flat polygon becomes a surface with two sides and no volume.
     ///
     /// # Errors
-    /// Returns [`SolidError::NoArea`] for a point or a segment, and an error for a body whose facets
-    /// [`Solid::from_mesh`] rejects.
+    /// Returns [`SolidError::Rounded`] for a rounded body, [`SolidError::NoArea`] for a point or a segment, and an
+    /// error for a body whose facets [`Solid::from_mesh`] rejects.
     fn as_solid(&self) -> Result<&Solid, SolidError>;
 
     /// Returns the body as a solid, and a point or a segment as one facet without area.
     ///
     /// Casts, distances, motions and scenes accept such a facet. It is an open shell: it has no interior and no
-    /// offset.
+    /// offset. The result has the radius of the body, so a sphere is a point with a radius.
     ///
     /// # Errors
     /// Returns an error for a body whose facets [`Solid::from_mesh`] rejects.
@@ -130,6 +134,7 @@ pub trait AsSolid: InputNumbered {
 
 impl AsSolid for Solid {
     fn as_solid(&self) -> Result<&Solid, SolidError> {
+        round::check_is_not_rounded(self.radius)?;
         match self.triangles[..] {
             [[a, b, c]] if a == b && b == c => Err(SolidError::NoArea { what: "point" }),
             [_] if self.is_without_area(0) => Err(SolidError::NoArea { what: "segment" }),
@@ -210,7 +215,7 @@ impl Solid {
     ///
     /// # Errors
     /// Returns an error if there are no pieces, if the result has more than `2^29 - 1` triangles, input vertices or
-    /// input facets, or if [`AsSolid::as_solid`] rejects a piece, for example a point or a segment.
+    /// input facets, or if [`AsSolid::as_solid`] rejects a piece, for example a point, a segment or a rounded body.
     pub fn from_pieces<'a, B: AsSolid + 'a>(
         pieces: impl IntoIterator<Item = &'a B>,
     ) -> Result<Self, SolidError> {
@@ -333,6 +338,7 @@ impl Solid {
             nodes,
             spans: Vec::new(),
             reach,
+            radius: 0.0,
             input_counts: surface.input_counts,
             report,
             shrinking: OnceLock::new(),
@@ -367,6 +373,7 @@ impl Solid {
     pub fn has_same_tree(&self, other: &Self) -> bool {
         let place = |node: &Node| (node.child_offset, node.first_facet, node.facet_count);
         self.vertices == other.vertices
+            && self.radius == other.radius
             && self.triangles == other.triangles
             && self.kinds == other.kinds
             && self.nodes.iter().map(place).eq(other.nodes.iter().map(place))
@@ -444,13 +451,13 @@ impl Solid {
     }
 
     /// Returns the sum of the volumes of all shells, in cubic units. Overlaps of pieces count twice. If a shell is
-    /// open, the sum has no meaning.
+    /// open, the sum has no meaning. The radius of a rounded solid does not count.
     pub fn volume(&self) -> f64 {
         self.report.shells.iter().map(|s| s.volume).sum()
     }
 
-    /// Computes proven bounds on the volume, `[lower, upper]`; `None` if a shell is open. Derivation:
-    /// `docs/theory/solid-bounds.md`.
+    /// Computes proven bounds on the volume without a radius, `[lower, upper]`; `None` if a shell is open.
+    /// Derivation: `docs/theory/solid-bounds.md`.
     pub fn volume_bounds(&self) -> Option<[f64; 2]> {
         const U: f64 = f64::EPSILON / 2.0;
         if !self.is_closed() {
@@ -471,7 +478,7 @@ impl Solid {
         Some([lower.min(value), upper.max(value)])
     }
 
-    /// Returns the bounding box of all vertices.
+    /// Returns the bounding box of all vertices. It does not contain the radius of a rounded solid.
     pub fn bounds(&self) -> Aabb {
         self.nodes[0].bounds
     }
@@ -567,5 +574,9 @@ impl VertexHull for Solid {
 
     fn reach(&self) -> f64 {
         Self::reach(self)
+    }
+
+    fn radius(&self) -> f64 {
+        Self::radius(self)
     }
 }

@@ -83,7 +83,7 @@ impl Solid {
     ///
     /// # Errors
     /// Returns [`SolidError::Amount`] for an amount that is negative, not finite, or moves coordinates out of the
-    /// exact range.
+    /// exact range, and [`SolidError::Rounded`] for a rounded solid.
     ///
     /// ```
     /// use colltrans::{Aabb, ConvexPolyhedron, Solid};
@@ -118,6 +118,7 @@ impl Solid {
         if !(amount.is_finite() && amount >= 0.0) {
             return Err(SolidError::Amount { amount });
         }
+        super::round::check_is_not_rounded(self.radius)?;
         let report = self.shrink_report(signed);
         let vertices: Vec<DVec3> = self
             .vertices

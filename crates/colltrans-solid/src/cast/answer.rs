@@ -20,7 +20,7 @@ use super::tolerance::least_tolerance_from;
 use super::{
     Cover, SolidCast, SolidCertificate, SolidFree, SolidOverlap, SolidScene, StartOverlap,
 };
-use super::{StartProof, StopProof, check_thickness, default_tolerance, verify};
+use super::{StartProof, StopProof, check_thickness, core_gap, default_tolerance, verify};
 use crate::body::{AsSolid, Solid};
 use crate::solve::bound::Reason;
 use crate::solve::contact::{SolidContact, contact_of_facets, nominal_translation};
@@ -54,10 +54,10 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
 
     fn tolerance(&self) -> f64 {
         self.options.tolerance.unwrap_or_else(|| {
-            let (setting, min_gap) = (&self.setting, self.options.min_gap);
+            let (setting, core_gap) = (&self.setting, core_gap(self));
             let permuted =
                 permutes_axes(setting.moving_matrix) && permutes_axes(setting.fixed_matrix);
-            default_tolerance(permuted, noise_and_gap(setting.size(), min_gap).0)
+            default_tolerance(permuted, noise_and_gap(setting.size(), core_gap).0)
         })
     }
 

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::{DEFAULT_TOLERANCE_NOISES, SolidCast, SolidFree, check_thickness};
+use super::{DEFAULT_TOLERANCE_NOISES, SolidCast, SolidFree, check_thickness, core_gap};
 use crate::body::Solid;
 use crate::solve::scene::permutes_axes;
 use crate::solve::separate::Boxes;
@@ -26,11 +26,11 @@ pub(super) enum BoxAnswer {
     Undecided,
 }
 
-/// Tests the boxes of the bodies. Returns [`BoxAnswer::Undecided`] if a minimum gap is set or the options state an
-/// overlap.
+/// Tests the boxes of the bodies. Returns [`BoxAnswer::Undecided`] if a minimum gap is set, a body is rounded or the
+/// options state an overlap.
 pub(super) fn answer_by_boxes(cast: &Cast<'_, Solid>) -> BoxAnswer {
     let (setting, options) = (&cast.setting, cast.options);
-    if options.min_gap > 0.0 || options.overlapping == Some(true) {
+    if core_gap(cast) > 0.0 || options.overlapping == Some(true) {
         return BoxAnswer::Undecided;
     }
     let noise = setting.noise().point_error();

@@ -1,7 +1,8 @@
 //! Casts of solids: how far a [`Solid`] can move before it blocks, with certificates.
 //!
 //! With a tolerance `L`, both bodies are offset inwards by `L / 2` before the query. If their interiors then have a
-//! common point, or an open shell passes through the other body, the answer is an overlap.
+//! common point, or an open shell passes through the other body, the answer is an overlap. Of rounded bodies the cores
+//! are offset, and the radii add to the minimum gap of the cores.
 //!
 //! - [`queries`] declares the queries as traits, `answer` implements them.
 //! - [`boxes`] and [`hulls`] answer queries without a search.
@@ -257,6 +258,11 @@ impl CastBody for Solid {
             }
         }
     }
+}
+
+/// Returns the minimum gap of the cores of a cast, rounded up: that of the bodies plus their radii.
+fn core_gap(cast: &Cast<'_, Solid>) -> f64 {
+    cast.setting.core_gap_bounds(cast.options.min_gap)[1]
 }
 
 /// Checks that the offset of a tolerance leaves something of both bodies, by their boxes.

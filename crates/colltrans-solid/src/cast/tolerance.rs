@@ -98,7 +98,9 @@ pub(crate) fn least_tolerance_from(
 /// `false` for a shell.
 fn facets_separate_bodies(scene: &PairFrame, place: Overlap) -> bool {
     let plane = overlap::widest_separation(scene, place);
-    plane.is_some_and(|(gap, normal)| gap > 0.0 && separate::is_separating(scene, normal))
+    plane.is_some_and(|(gap, normal)| {
+        gap > scene.min_gap() && separate::is_separating(scene, normal)
+    })
 }
 
 /// Computes an upper bound of the tolerance from which on a place shows no overlap. At the tolerance `overlapping`
@@ -116,7 +118,10 @@ fn place_tolerance(
         *tests += 1;
         tolerance > overlapping && !overlap::is_overlap(&shrunk(tolerance), place)
     };
-    let gap = |tolerance| overlap::widest_separation(&shrunk(tolerance), place).map(|(gap, _)| gap);
+    let gap = |tolerance| {
+        let widest = overlap::widest_separation(&shrunk(tolerance), place);
+        widest.map(|(gap, _)| gap - nominal.min_gap())
+    };
     let (ends, noise) = ([overlapping, max_offset_tolerance], nominal.noise);
     let ends = match secant_root(gap, overlapping, noise) {
         Some(guess) if guess < max_offset_tolerance => {

@@ -28,7 +28,8 @@ use colltrans_convex::body::Feature;
 ///
 /// The contact points belong to the nominal bodies. Their weights with respect to the corners of the facets are those
 /// of the points where the offset bodies touch. At [`Self::translation`] they coincide along the normal. Laterally they
-/// may differ by the displacement of the offset.
+/// may differ by the displacement of the offset. Points of rounded bodies are those of the cores, moved by the radius
+/// along the normal.
 ///
 /// The feature of a body is chosen among those that contain the contact point: the face that lies in the contact plane,
 /// otherwise the edge that does, otherwise the smallest of a corner, an edge or a face.
@@ -197,12 +198,14 @@ pub(crate) fn contact_of_facets(
         let at = foot.weighted_mean(|v| side.solid.vertices()[v as usize]);
         feature_at(side.solid, triangle, (at, side.matrix.transpose() * normal), scene.noise)
     };
+    let cores = [on_f.nominal_point(moving), on_g.nominal_point(fixed)];
+    let [point_on_moving, point_on_fixed] = scene.setting.surface_points(cores, normal);
     SolidContact {
         translation,
         offset_distance,
         normal,
-        point_on_moving: on_f.nominal_point(moving) + origin,
-        point_on_fixed: on_g.nominal_point(fixed) + origin,
+        point_on_moving: point_on_moving + origin,
+        point_on_fixed: point_on_fixed + origin,
         moving_feature: named(moving, found.moving, &on_f),
         fixed_feature: named(fixed, found.fixed, &on_g),
         triangles: [found.moving, found.fixed],

@@ -324,12 +324,12 @@ fn show_overlap(scene: &PairFrame, f: &Triangle, g: &Triangle) -> bool {
 
 /// Checks whether two triangles are certainly nearer than the minimum gap.
 fn are_nearer(scene: &PairFrame, f: &Triangle, g: &Triangle) -> bool {
-    FacetDifference::new(scene, &f.corners, &g.corners).are_within(scene.min_gap, false)
+    FacetDifference::new(scene, &f.corners, &g.corners).are_within(scene.core_gap[0], false)
 }
 
 /// Checks whether the distance of two triangles is certainly at most the minimum gap.
 fn are_as_near(scene: &PairFrame, f: &Triangle, g: &Triangle) -> bool {
-    FacetDifference::new(scene, &f.corners, &g.corners).are_within(scene.min_gap, true)
+    FacetDifference::new(scene, &f.corners, &g.corners).are_within(scene.core_gap[0], true)
 }
 
 /// Checks whether two triangles, as closed sets, have a common point. If they do, an edge of one meets the other.

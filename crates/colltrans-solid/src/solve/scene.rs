@@ -66,16 +66,37 @@ pub struct PairFrame<'a> {
     pub fixed: PlacedBody<'a>,
     /// Maps the setting frame to the query frame.
     pub(crate) frame: DMat3,
-    /// Minimum gap of the bodies; 0 if it is too small to be distinguished from rounding errors.
-    pub(crate) min_gap: f64,
+    /// Lower and upper bound of the minimum gap of the cores: that of the bodies plus their radii. Both are 0 if the gap
+    /// is too small to be distinguished from rounding errors.
+    pub(crate) core_gap: [f64; 2],
+    /// Minimum gap of the bodies, or 0 like [`Self::core_gap`].
+    pub(crate) body_gap: f64,
     /// Bound on the rounding error of a coordinate in the query frame.
     pub noise: f64,
 }
 
 impl<'a> PairFrame<'a> {
-    /// Builds the scene of two bodies that are offset by the given amounts, with a minimum gap `min_gap`.
+    /// Builds the scene of two bodies whose cores are offset by the given amounts, with a minimum gap `min_gap` of the
+    /// bodies. Radii of the bodies add to the gap of the cores.
     #[inline]
-    pub fn new(setting: &Setting<'a, Solid>, [moving, fixed]: [f64; 2], min_gap: f64) -> Self {
+    pub fn new(setting: &Setting<'a, Solid>, offsets: [f64; 2], min_gap: f64) -> Self {
+        Self::with_gaps(setting, offsets, setting.core_gap_bounds(min_gap), min_gap)
+    }
+
+    /// Builds the scene of the cores of two bodies, in nominal position and without a minimum gap.
+    #[inline]
+    pub fn of_cores(setting: &Setting<'a, Solid>) -> Self {
+        Self::with_gaps(setting, [0.0; 2], [0.0; 2], 0.0)
+    }
+
+    /// Builds the scene of two bodies with these bounds of the gap of their cores.
+    #[inline]
+    fn with_gaps(
+        setting: &Setting<'a, Solid>,
+        [moving, fixed]: [f64; 2],
+        core_gap: [f64; 2],
+        body_gap: f64,
+    ) -> Self {
         let frame = frame_along(setting.direction / setting.length);
         let at_origin = [DVec3::ZERO; 2];
         let moving = PlacedBody::new(
@@ -87,29 +108,38 @@ impl<'a> PairFrame<'a> {
         let offset = setting.offset_and_error();
         let fixed =
             PlacedBody::new((setting.fixed, fixed, false), setting.fixed_matrix, offset, frame);
-        let mut scene = Self { setting: *setting, moving, fixed, frame, min_gap, noise: 0.0 };
-        scene.set_noise_and_gap(min_gap);
+        let mut scene =
+            Self { setting: *setting, moving, fixed, frame, core_gap, body_gap, noise: 0.0 };
+        scene.set_noise_and_gaps();
         scene
     }
 
-    /// Sets the noise, the effective minimum gap and the enlargement of the moving body, from the sizes of the bodies
-    /// and the minimum gap `min_gap`.
-    fn set_noise_and_gap(&mut self, min_gap: f64) {
+    /// Sets the noise, the effective gaps and the enlargement of the moving body, from the sizes of the bodies and the
+    /// given gaps.
+    fn set_noise_and_gaps(&mut self) {
         let Self { setting, moving, fixed, .. } = self;
         let size = configuration_size(setting, moving, fixed);
-        let (noise, min_gap) = noise_and_gap(size, min_gap);
+        let (noise, core_gap) = noise_and_gap(size, self.core_gap[1]);
+        if core_gap == 0.0 {
+            (self.core_gap, self.body_gap) = ([0.0; 2], 0.0);
+        }
         // A pose may stretch axes by its defect. The last term covers rounding.
         let stretch = 1.0 + 2.0 * moving.defect.max(fixed.defect) + 16.0 * f64::EPSILON;
-        moving.swell = min_gap * stretch;
+        moving.swell = core_gap * stretch;
         self.noise = noise;
-        self.min_gap = min_gap;
     }
 
-    /// Checks whether a minimum gap is required.
+    /// Returns the minimum gap of the cores, rounded up.
+    #[inline]
+    pub(crate) fn min_gap(&self) -> f64 {
+        self.core_gap[1]
+    }
+
+    /// Checks whether the cores are to keep a minimum gap.
     #[inline]
     pub(crate) fn has_min_gap(&self) -> bool {
         // Without the feature the compiler removes code that only a minimum gap reaches.
-        cfg!(feature = "min-gap") && self.min_gap > 0.0
+        cfg!(feature = "min-gap") && self.min_gap() > 0.0
     }
 
     /// Returns the position of a corner in the setting frame.
@@ -130,8 +160,10 @@ impl<'a> PairFrame<'a> {
         };
         let (moving, fixed) = (resized(&self.moving, moving), resized(&self.fixed, fixed));
         let size = configuration_size(&self.setting, &moving, &fixed);
-        let (noise, min_gap) = noise_and_gap(size, self.min_gap);
-        Self { moving, fixed, noise: noise.max(self.noise), min_gap, ..*self }
+        let (noise, core_gap) = noise_and_gap(size, self.min_gap());
+        let (core_gap, body_gap) =
+            if core_gap == 0.0 { ([0.0; 2], 0.0) } else { (self.core_gap, self.body_gap) };
+        Self { moving, fixed, noise: noise.max(self.noise), core_gap, body_gap, ..*self }
     }
 
     /// Checks whether both bodies have the axes of the query frame.

@@ -35,7 +35,7 @@ pub(crate) const HEIGHTS: f64 = 1.5;
 const BOXES: f64 = 2.0;
 
 /// Finds a plane, parallel to the direction, that separates the offset bodies by more than the minimum gap and the
-/// rounding errors. `None` if there is no such plane. Also `None` sometimes for large faces whose distance is at most
+/// rounding errors. The margin is that of the cores less both radii. `None` if there is no such plane. Also `None` sometimes for large faces whose distance is at most
 /// the offset, because the search visits at most [`MAX_LEAVES`] leaves for a vertex.
 pub(crate) fn find_separation(scene: &PairFrame) -> Option<Separation> {
     let boxes = [&scene.moving, &scene.fixed].map(PlacedBody::offset_bounds);
@@ -54,8 +54,8 @@ pub(crate) fn shadows_apart(scene: &PairFrame, p: &Projected, q: &Projected) -> 
 fn between_boxes(scene: &PairFrame, boxes: &[Aabb; 2]) -> Option<Separation> {
     let boxes = Boxes::new(&scene.setting, boxes);
     let normal = boxes.widest_normal(0.0)?;
-    let margin = boxes.margin(normal, scene.noise);
-    (margin > scene.min_gap).then_some(Separation { normal, margin })
+    let margin = scene.setting.less_radii(boxes.margin(normal, scene.noise));
+    (margin > scene.body_gap).then_some(Separation { normal, margin })
 }
 
 /// Two boxes in the frames of their bodies.
@@ -165,7 +165,8 @@ fn between_hulls(scene: &PairFrame) -> Option<Separation> {
         let normal = (scene.frame.transpose() * axis.extend(0.0)).normalize_or_zero();
         let sides = facing_sides(scene, normal);
         let margin = margin_along(scene, normal, sides.each_ref().map(Farthest::height_bound));
-        if margin > scene.min_gap {
+        let margin = scene.setting.less_radii(margin);
+        if margin > scene.body_gap {
             return Some(Separation { normal, margin });
         }
         let [p, q] = &sides;
@@ -204,18 +205,20 @@ pub(crate) fn verify_separation(
     let reaches = [&scene.moving, &scene.fixed].map(highest);
     // All vertices are compared here, so no error of ties remains.
     let proven = margin_along(scene, normal, reaches) + TIES * scene.noise;
+    let proven = scene.setting.less_radii(proven);
     let claimed = separation.margin;
-    if claimed > scene.min_gap && claimed <= proven {
+    if claimed > scene.body_gap && claimed <= proven {
         Ok(proven)
     } else {
         Err(CertificateError::Bound { proven, claimed })
     }
 }
 
-/// Checks whether a plane with this normal certainly separates the bodies, with the moving body below.
+/// Checks whether a plane with this normal certainly separates the bodies by more than the minimum gap, with the moving
+/// body below.
 pub(crate) fn is_separating(scene: &PairFrame, normal: DVec3) -> bool {
     let [p, q] = facing_sides(scene, normal).map(|side| side.height_bound());
-    normal.dot(scene.fixed.offset[0]) - q - p > HEIGHTS * scene.noise
+    normal.dot(scene.fixed.offset[0]) - q - p > scene.min_gap() + HEIGHTS * scene.noise
 }
 
 /// Returns an upper bound of the coordinates of an offset body's vertices along a normal of the world, relative to the

@@ -13,5 +13,6 @@ mod oracle;
 mod points;
 mod proof;
 mod properties;
+mod rounded;
 mod sheets;
 mod work;

@@ -19,7 +19,8 @@ fn all_families_are_right() {
     let mut counts = [0; 3];
     for family in known.chain(convex) {
         for seed in 0..cases(8) {
-            let seen = examine(&family, seed).unwrap_or_else(|e| panic!("{family}:{seed}: {e}"));
+            let seen =
+                examine(&family, seed, false).unwrap_or_else(|e| panic!("{family}:{seed}: {e}"));
             counts[seen.map_or(0, |seen| seen as usize)] += 1;
         }
     }

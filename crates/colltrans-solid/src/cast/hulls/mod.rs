@@ -16,6 +16,7 @@ use std::cell::OnceCell;
 
 use glam::DVec3;
 
+use super::core_gap;
 use crate::body::Solid;
 use colltrans_convex::answer::{Contact, Outcome};
 use colltrans_convex::body::ConvexPolyhedron;
@@ -43,11 +44,11 @@ pub(super) struct Hulls<'a> {
 }
 
 impl<'a> Hulls<'a> {
-    /// Casts the hulls of two convex solids. `None` if a body is not convex, a minimum gap is set, the options
-    /// state an overlap, or the cast fails.
+    /// Casts the hulls of two convex solids. `None` if a body is not convex or is rounded, a minimum gap is
+    /// set, the options state an overlap, or the cast fails.
     pub(super) fn of_cast(cast: &Cast<'a, Solid>) -> Option<Self> {
         let options = cast.options();
-        if options.min_gap > 0.0 || options.overlapping == Some(true) {
+        if core_gap(cast) > 0.0 || options.overlapping == Some(true) {
             return None;
         }
         let bodies = [Surface::of_convex(cast.moving())?, Surface::of_convex(cast.fixed())?];

@@ -45,7 +45,7 @@ impl FacetDifference {
     /// Returns the line of the search along the direction of a scene (`sign` 1) or against it (-1).
     fn search_line(scene: &PairFrame, sign: f64) -> GapLine {
         let unit = scene.setting.direction / scene.setting.length * sign;
-        GapLine::new(unit, scene.min_gap, scene.size() - scene.min_gap)
+        GapLine::new(unit, scene.min_gap(), scene.size() - scene.min_gap())
     }
 
     fn plane_along(&self, normal: DVec3) -> SetPlane<()> {
@@ -130,7 +130,7 @@ pub(crate) fn min_gap_crossing(
     limit: f64,
     wanted: GapFilter,
 ) -> Option<Gap> {
-    let reach = scene.min_gap + 4.0 * scene.noise;
+    let reach = scene.min_gap() + 4.0 * scene.noise;
     let apart = |axis: usize| f.bounds.is_separated_along(&g.bounds, axis, reach);
     if apart(0) || apart(1) || g.bounds.low.z - f.bounds.high.z - reach >= limit {
         return None;
@@ -140,7 +140,7 @@ pub(crate) fn min_gap_crossing(
     }
     let facets = &mut FacetDifference::new(scene, &f.corners, &g.corners);
     let line = &FacetDifference::search_line(scene, 1.0);
-    if wanted == GapFilter::NotCrossing && facets.are_within(scene.min_gap, false) {
+    if wanted == GapFilter::NotCrossing && facets.are_within(scene.core_gap[0], false) {
         return None;
     }
     let start = facets.plane_along(line.unit);

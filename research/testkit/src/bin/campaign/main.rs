@@ -108,7 +108,7 @@ const fn campaign(
 }
 
 /// All campaigns. The first one is the default.
-const CAMPAIGNS: [Campaign; 17] = [
+const CAMPAIGNS: [Campaign; 19] = [
     campaign("--settings", settings, casts::COLUMNS, casts::examine),
     Campaign {
         counts: "QUERIES",
@@ -118,6 +118,13 @@ const CAMPAIGNS: [Campaign; 17] = [
     campaign("--solids", solids::cast_families, solids::CASTS, solids::casts),
     campaign("--solid-distances", solids::mesh_families, solids::DISTANCES, solids::distances),
     campaign("--solid-min-gaps", solids::mesh_families, solids::MIN_GAPS, solids::min_gaps),
+    campaign(
+        "--rounded-solid-distances",
+        solids::mesh_families,
+        solids::DISTANCES,
+        solids::rounded_distances,
+    ),
+    campaign("--rounded-solids", solids::mesh_families, solids::MIN_GAPS, solids::rounded_casts),
     campaign("--solid-motions", solids::motion_families, solids::MOTIONS, solids::motions),
     Campaign {
         counts: "DIRECTIONS",

@@ -6,6 +6,7 @@ use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
 use colltrans_testkit::oracle::solids::{
     MotionOutcome, as_solids, min_gap, nearest, sheets, turning,
 };
+use colltrans_testkit::random::Random;
 use colltrans_testkit::tally::Tally;
 
 use crate::Asked;
@@ -75,6 +76,22 @@ pub(crate) fn casts(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> 
 pub(crate) fn distances(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let setting = nearest::Setting::draw(asked.family, asked.seed);
     let found = setting.and_then(|found| found.map(|setting| setting.examine()).transpose());
+    count_distance(found, tally)
+}
+
+/// Examines distances of rounded solids.
+pub(crate) fn rounded_distances(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
+    let setting = nearest::Setting::draw(asked.family, asked.seed);
+    let random = &mut Random::stream(asked.seed, &[asked.family.len() as u64, 0x2ad]);
+    let examined = |setting: nearest::Setting| setting.rounded(random)?.examine();
+    count_distance(setting.and_then(|found| found.map(examined).transpose()), tally)
+}
+
+/// Counts the outcome of a distance.
+fn count_distance(
+    found: Result<Option<nearest::DistanceOutcome>, String>,
+    tally: &mut Tally,
+) -> Result<(), String> {
     count_outcome(found, tally, |seen| match seen {
         nearest::DistanceOutcome::Touching => "touching",
         nearest::DistanceOutcome::Inside => "inside",
@@ -85,7 +102,20 @@ pub(crate) fn distances(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), Stri
 
 /// Examines casts with a minimum gap.
 pub(crate) fn min_gaps(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
-    count_outcome(min_gap::examine(asked.family, asked.seed), tally, |seen| match seen {
+    count_gap(min_gap::examine(asked.family, asked.seed, false), tally)
+}
+
+/// Examines casts of rounded solids.
+pub(crate) fn rounded_casts(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
+    count_gap(min_gap::examine(asked.family, asked.seed, true), tally)
+}
+
+/// Counts the outcome of a cast with a minimum gap.
+fn count_gap(
+    found: Result<Option<min_gap::GapOutcome>, String>,
+    tally: &mut Tally,
+) -> Result<(), String> {
+    count_outcome(found, tally, |seen| match seen {
         min_gap::GapOutcome::Nearer => "nearer",
         min_gap::GapOutcome::Free => "free",
         min_gap::GapOutcome::Blocked => "blocked",

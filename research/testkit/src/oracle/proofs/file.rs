@@ -25,6 +25,8 @@ pub struct Bodies {
     pub direction: Option<DVec3>,
     /// The minimum gap.
     pub min_gap: f64,
+    /// The sum of the radii of rounded solids.
+    pub radii: Dyadic,
     /// The size `S`.
     pub size: f64,
 }
@@ -34,6 +36,7 @@ impl Bodies {
     pub fn read(file: &Value) -> Option<Self> {
         let (mut points, mut facets) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
         let (mut size, mut origins) = (0.0, [DVec3::ZERO; 2]);
+        let mut radii = Dyadic::ZERO;
         for k in 0..2 {
             let at = file.pointer(&format!("/placement/poses/{k}"))?;
             let body = body_at(file, at)?;
@@ -41,7 +44,8 @@ impl Bodies {
             if let Some(convex) = body.get("convex") {
                 vertices = vectors(convex.get("vertices")?)?;
             } else {
-                for piece in body.get("pieces")?.as_array()? {
+                radii = &radii + &Dyadic::new(radius_of_solid(body)?);
+                for piece in pieces_of_solid(body)? {
                     let base = vertices.len();
                     vertices.append(&mut vectors(piece.get("vertices")?)?);
                     for triangle in piece.get("triangles")?.as_array()? {
@@ -63,12 +67,18 @@ impl Bodies {
         let direction = direction.map_or(Some(None), |d| d.map(Some))?;
         let min_gap = file.pointer("/query/cast/min_gap").map_or(Some(0.0), Value::as_f64)?;
         let size = (size + (origins[1] - origins[0]).length()).max(MIN_MAGNITUDE);
-        Some(Self { points, facets, direction, min_gap, size })
+        Some(Self { points, facets, direction, min_gap, radii, size })
     }
 
-    /// Returns the noise, `32 u (S + g)`.
+    /// Returns the noise, `32 u (S + g)`, where `g` includes the radii of rounded solids.
     pub fn noise(&self) -> f64 {
-        16.0 * f64::EPSILON * (self.size + self.min_gap)
+        16.0 * f64::EPSILON * (self.size + self.min_gap + self.radii.to_f64())
+    }
+
+    /// Returns the square of a length plus the radii of rounded solids, exactly.
+    pub fn square_between_cores(&self, length: f64) -> Ratio {
+        let sum = &Dyadic::new(length) + &self.radii;
+        Ratio::new(&sum * &sum, Dyadic::new(1.0))
     }
 
     /// Returns an upper bound of `count` noises.
@@ -144,6 +154,16 @@ fn moved(points: &[Vector], direction: DVec3, t: f64) -> Vec<Vector> {
 /// Returns the body of a file to which a placement refers.
 pub fn body_at<'a>(file: &'a Value, place: &Value) -> Option<&'a Value> {
     file.get("bodies")?.get(place.get("body")?.as_u64()? as usize)
+}
+
+/// Returns the pieces of a solid of a file.
+pub fn pieces_of_solid(body: &Value) -> Option<&Vec<Value>> {
+    body.get("rounded").unwrap_or(body).get("pieces")?.as_array()
+}
+
+/// Returns the radius of a solid of a file.
+pub fn radius_of_solid(body: &Value) -> Option<f64> {
+    body.pointer("/rounded/radius").map_or(Some(0.0), Value::as_f64)
 }
 
 /// Reads a vector.

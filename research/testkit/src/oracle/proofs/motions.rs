@@ -10,8 +10,9 @@ use serde_json::{Value, json};
 
 use super::casts::{other_normal, other_pair, other_weights, rounded_cloud};
 use super::checkers::{Verdict, verify};
-use super::file::{body_at, indices, is_at_limit, numbers, vector, vectors};
+use super::file::{body_at, indices, is_at_limit, numbers, radius_of_solid, vector, vectors};
 use super::mutants::{number, with};
+use super::solids::sometimes_rounded;
 use super::{CheckerKind, Claim, Kind};
 use crate::oracle::distance::distance;
 use crate::oracle::exact::{Ratio, Vector};
@@ -143,7 +144,7 @@ fn solid_base(seed: u64) -> Option<String> {
         let moved: Vec<DVec3> = one.vertices().iter().map(|v| by.transform_point(*v)).collect();
         Solid::from_pieces([&one, &ConvexPolyhedron::from_points(&moved).ok()?]).ok()
     };
-    let (p, q) = (solid()?, solid()?);
+    let [p, q] = sometimes_rounded([solid()?, solid()?], seed)?;
     let [a, b] = motions(random)?;
     let mut cast = MotionCast::<Solid>::new(p.with_motion(&a), q.with_motion(&b)).ok()?;
     if random.one_in(4) {
@@ -472,7 +473,10 @@ fn solid_falsehood(file: &Value, who: CheckerKind) -> Option<String> {
 /// Returns the false statements about the facets of a file, which for the library are those of the shrunk
 /// solids.
 fn found_of_solids(file: &Value, who: CheckerKind) -> Option<Vec<String>> {
-    let min_gap = file.pointer("/query/motions/0/min_gap").map_or(Some(0.0), Value::as_f64)?;
+    let movers = file.pointer("/placement/motions/0")?;
+    let radius = |k: usize| radius_of_solid(body_at(file, &movers[k])?);
+    let gap = file.pointer("/query/motions/0/min_gap").map_or(Some(0.0), Value::as_f64)?;
+    let min_gap = gap + radius(0)? + radius(1)?;
     let facets = |k: usize| -> Option<Vec<Vec<DVec3>>> {
         file.pointer(&format!("/statement/motions/0/solids/parts/{k}/corners"))?
             .as_array()?
@@ -481,7 +485,6 @@ fn found_of_solids(file: &Value, who: CheckerKind) -> Option<Vec<String>> {
             .collect()
     };
     let bodies = [facets(0)?, facets(1)?];
-    let movers = file.pointer("/placement/motions/0")?;
     let moves = [Moves::read(&movers[0]["motion"])?, Moves::read(&movers[1]["motion"])?];
     let start = file.pointer(&format!("{SOLID_PROOF}/start"))?;
     let apart = start.get("apart").is_some();

@@ -10,7 +10,7 @@ use super::file::{Bodies, body_at, is_at_limit, numbers, vector, vectors};
 use super::motions::{body, first, is_at_the_limit, pose, refused_for_rounding};
 use super::mutants::{number, pointers, with};
 use super::{CheckerKind, Claim, Kind};
-use crate::oracle::exact::{Ratio, place};
+use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
 use crate::oracle::nearest::depth;
 use crate::random::Random;
 use crate::shapes::reach;
@@ -218,6 +218,7 @@ fn read_pairs(file: &Value) -> Option<Vec<Bodies>> {
             facets: [Vec::new(), Vec::new()],
             direction,
             min_gap,
+            radii: Dyadic::ZERO,
             size,
         })
     };
@@ -309,7 +310,7 @@ fn swept_meets(pair: &Bodies, d: DVec3, until: f64, allowed: f64) -> bool {
         return false;
     }
     let mut swept = pair.points[0].clone();
-    let by = crate::oracle::exact::Vector::new(d).times(&crate::oracle::exact::Dyadic::new(until));
+    let by = Vector::new(d).times(&Dyadic::new(until));
     swept.extend(pair.points[0].iter().map(|p| p.plus(&by)));
     let square = crate::oracle::distance::distance(&swept, &pair.points[1]).square;
     if pair.min_gap > 0.0 {

@@ -9,7 +9,7 @@ use super::casts::{BAND, HUGE, false_gap, first_of, other_normal, other_weights,
 use super::file::{Bodies, is_at_limit, numbers, square, vector};
 use super::mutants::with;
 use super::{CheckerKind, Claim, Kind};
-use crate::oracle::exact::{Ratio, Vector};
+use crate::oracle::exact::{Dyadic, Ratio, Vector};
 use crate::oracle::solids::facets::rule;
 use crate::oracle::solids::{nearest, settings};
 use crate::random::Random;
@@ -57,8 +57,20 @@ pub(super) fn of_cubes(seed: u64) -> Option<([Solid; 2], [colltrans::Pose; 2], D
     Some(([a, b], poses, setting.direction))
 }
 
+/// Rounds one or both of two solids for every fourth seed.
+pub(super) fn sometimes_rounded(solids: [Solid; 2], seed: u64) -> Option<[Solid; 2]> {
+    let random = &mut Random::stream(seed, &[0x2ad1]);
+    if !random.one_in(4) {
+        return Some(solids);
+    }
+    let [a, b] = solids;
+    let mut radius = || if random.one_in(3) { 0.0 } else { 10.0_f64.powf(random.range(-3.0, 0.0)) };
+    Some([a.rounded(radius()).ok()?, b.rounded(radius()).ok()?])
+}
+
 fn clearance(seed: u64) -> Option<String> {
-    let ([a, b], poses, direction) = of_cubes(seed)?;
+    let (solids, poses, direction) = of_cubes(seed)?;
+    let [a, b] = sometimes_rounded(solids, seed)?;
     let cast = Cast::new(a.at(poses[0]), b.at(poses[1]), direction).ok()?;
     let tolerance = if seed.is_multiple_of(3) { cast.tolerance() } else { 0.0 };
     let options = cast.options().with_tolerance(tolerance);
@@ -76,7 +88,7 @@ fn distance(seed: u64) -> Option<String> {
         let (solids, poses, _) = of_cubes(seed)?;
         (solids, poses)
     };
-    let [a, b] = &solids;
+    let [a, b] = &sometimes_rounded(solids, seed)?;
     if a.triangles().len() + b.triangles().len() > MOST_FACETS {
         return None;
     }
@@ -149,12 +161,13 @@ fn false_distance(bodies: &Bodies, file: &Value, who: CheckerKind) -> Option<Str
     let truth = nearest::surfaces(&[surface(bodies, 0), surface(bodies, 1)]);
     let say = |what: &str, x: f64| Some(format!("{what} {x:e} of {:e}", truth.sqrt_to_f64()));
     if let Some(near) = at(format!("{POINTS}/distance"))
-        && (near < 0.0 || square(near) < truth)
+        && (near < 0.0 || bodies.square_between_cores(near) < truth)
     {
         return say("points within", near);
     }
     let lower = at(format!("{DISTANCE}/lower"))?;
-    if lower < 0.0 || who == CheckerKind::Library && square(lower) > truth {
+    let is_larger = lower > 0.0 && bodies.square_between_cores(lower) > truth;
+    if lower < 0.0 || who == CheckerKind::Library && is_larger {
         return say("a distance of at least", lower);
     }
     None
@@ -164,14 +177,25 @@ fn false_clearance(bodies: &Bodies, file: &Value, who: CheckerKind) -> Option<St
     let at = |at: String| file.pointer(&at).and_then(Value::as_f64);
     let d = bodies.direction?;
     let shrunk = at(format!("{CERTIFICATE}/tolerance")) != Some(0.0);
+    // Rounded down, in favour of the claim.
+    let radii = bodies.radii.to_f64();
+    let of_cores = |margin: f64| if radii == 0.0 { margin } else { (margin + radii).next_down() };
     if let Some(margin) = at(format!("{SEPARATION}/margin"))
         && !shrunk
-        && let Some(why) = false_gap(bodies, d, margin, 0.0)
+        && let Some(why) = false_gap(bodies, d, of_cores(margin), 0.0)
     {
         return Some(why);
     }
-    if shrunk || bodies.min_gap > 0.0 {
+    let starts_apart = file.pointer(&format!("{CERTIFICATE}/start/apart")).is_some();
+    if shrunk {
         return None;
+    }
+    let core_gap = bodies.min_gap + radii;
+    if core_gap > 0.0 {
+        let lower = at(format!("{CERTIFICATE}/lower"))
+            .unwrap_or(4.0 * (bodies.size + core_gap) / d.length());
+        let is_claimed = who == CheckerKind::Library && starts_apart;
+        return is_claimed.then(|| nearer_before(bodies, d, lower, core_gap)).flatten();
     }
     let bounds = [at(format!("{STOP}/lower")), at(format!("{STOP}/upper"))];
     let facets = file.pointer("/statement/clearance/stop/facets");
@@ -188,7 +212,6 @@ fn false_clearance(bodies: &Bodies, file: &Value, who: CheckerKind) -> Option<St
             return Some(format!("facets that meet at {:e}, not within {bounds:?}", met.to_f64()));
         }
     }
-    let starts_apart = file.pointer(&format!("{CERTIFICATE}/start/apart")).is_some();
     if who == CheckerKind::Library && starts_apart {
         let lower = at(format!("{CERTIFICATE}/lower"));
         let truth = rule(&surface(bodies, 0), &surface(bodies, 1), d).stop;
@@ -201,6 +224,26 @@ fn false_clearance(bodies: &Bodies, file: &Value, who: CheckerKind) -> Option<St
         };
     }
     None
+}
+
+/// Number of translations at which the distance of the cores is compared with their gap.
+const SAMPLES: u32 = 5;
+/// Number of noises by which facets may pass each other below the gap, including the errors of this module.
+const GRAZE: f64 = 9.0;
+
+/// Returns the reason why solids are nearer than the gap of their cores before a translation; `None` if no sample
+/// shows it.
+fn nearer_before(bodies: &Bodies, d: DVec3, end: f64, core_gap: f64) -> Option<String> {
+    let least = square((core_gap - bodies.noises(GRAZE)).max(0.0));
+    let [moving, fixed] = [0, 1].map(|k| surface(bodies, k));
+    (0..SAMPLES).find_map(|k| {
+        let t = end * f64::from(k) / f64::from(SAMPLES - 1);
+        let by = Vector::new(d).times(&Dyadic::new(t));
+        let moved = moving.iter().map(|f| f.each_ref().map(|corner| corner.plus(&by))).collect();
+        let found = nearest::surfaces(&[moved, fixed.clone()]);
+        let text = || format!("cores {:e} apart at {t:e}", found.sqrt_to_f64());
+        (found < least).then(text)
+    })
 }
 
 fn is_marginal(file: &Value) -> bool {

@@ -4,8 +4,8 @@
 //! To check that nothing is nearer before, each pair of facets is cast as two flat convex bodies, and the casts
 //! are judged by [`min_gap`](crate::oracle::min_gap).
 
-use colltrans::solid::{SolidCast, SolidCertificate};
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Solid};
+use colltrans::solid::{SolidCast, SolidCertificate, SolidNear};
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pair, Solid};
 use glam::DVec3;
 
 use super::facets::{Triangle, triangles};
@@ -34,11 +34,12 @@ pub enum GapOutcome {
     Blocked,
 }
 
-/// Casts the solids of a setting with a gap, and judges the answers. `None` for bodies that are not solids.
+/// Casts the solids of a setting with a gap, and judges the answers. With `rounded`, parts of the gap are radii of
+/// the solids. `None` for bodies that are not solids.
 ///
 /// # Errors
 /// A description of the first disagreement.
-pub fn examine(family: &str, seed: u64) -> Result<Option<GapOutcome>, String> {
+pub fn examine(family: &str, seed: u64, rounded: bool) -> Result<Option<GapOutcome>, String> {
     let Some(setting) = Setting::draw(family, seed)? else { return Ok(None) };
     let random = &mut Random::stream(seed, &[family.len() as u64, 0x6a9]);
     let size =
@@ -59,12 +60,23 @@ pub fn examine(family: &str, seed: u64) -> Result<Option<GapOutcome>, String> {
         1 => random.direction(),
         _ => toward.normalize_or(DVec3::X) + random.direction() * 0.3,
     };
-    let [a, b] = &setting.solids;
+    // Of rounded bodies, the radii are parts of the gap of their cores.
+    let unit = [random.unit(), random.unit()];
+    let shares = if rounded { [unit[0], random.pick(&[0.0, unit[1]])] } else { [0.0; 2] };
+    let radii = [gap * shares[0], gap * (1.0 - shares[0]) * shares[1]];
+    let gap = if rounded { random.pick(&[0.0, gap - radii[0] - radii[1]]).max(0.0) } else { gap };
+    let [a, b] = &round(setting.solids, radii)?;
     let cast = Cast::new(a.at(setting.poses[0]), b.at(setting.poses[1]), way * 2.0)
         .and_then(|cast| cast.with_tolerance(0.0))
         .and_then(|cast| cast.with_min_gap(gap))
         .map_err(|e| e.to_string())?;
-    judge(&cast).map(Some).map_err(|e| format!("gap {gap:e}: {e}"))
+    judge(&cast).map(Some).map_err(|e| format!("gap {gap:e}, radii {radii:?}: {e}"))
+}
+
+/// Rounds two solids.
+fn round([a, b]: [Solid; 2], [r, s]: [f64; 2]) -> Result<[Solid; 2], String> {
+    let rounded = |solid: Solid, radius| solid.rounded(radius).map_err(|e| e.to_string());
+    Ok([rounded(a, r)?, rounded(b, s)?])
 }
 
 /// Judges the answers of a cast with a minimum gap.
@@ -77,6 +89,7 @@ pub fn judge(cast: &Cast<Solid>) -> Result<GapOutcome, String> {
 
 struct Judge<'a> {
     cast: Cast<'a, Solid>,
+    /// The gap of the cores: that of the bodies plus their radii.
     gap: f64,
     noise: f64,
     placed: [Vec<Triangle>; 2],
@@ -88,7 +101,7 @@ impl<'a> Judge<'a> {
         let placed = bodies.map(|(solid, pose)| {
             triangles(solid.vertices(), solid.triangles(), (pose.matrix(), pose.translation()))
         });
-        let gap = cast.options().min_gap;
+        let gap = cast.options().min_gap + cast.moving().radius() + cast.fixed().radius();
         let poses = [&cast.moving_pose(), &cast.fixed_pose()];
         let size = size([cast.moving().vertices(), cast.fixed().vertices()], poses) + gap;
         Self { cast: *cast, gap, noise: 16.0 * f64::EPSILON * size, placed }
@@ -119,7 +132,13 @@ impl<'a> Judge<'a> {
         cast.verify(&proof).map_err(|e| format!("{clearance:?}: {e}"))?;
         let seen = match &clearance {
             Clearance::Overlapping(_) => {
-                let nested = cast.with_min_gap(0.0).is_ok_and(|plain| plain.overlaps());
+                // The surfaces of nested cores may be far apart.
+                let pair = Pair::new(
+                    cast.moving().at(cast.moving_pose()),
+                    cast.fixed().at(cast.fixed_pose()),
+                );
+                let found = pair.and_then(|pair| pair.distance()).map_err(|e| e.to_string())?;
+                let nested = matches!(found.near, SolidNear::Meeting(_));
                 let nearer = self.at(0.0) < exact_square(self.gap) || nested;
                 return nearer.then_some(GapOutcome::Nearer).ok_or_else(|| "not nearer".into());
             }
@@ -143,7 +162,7 @@ impl<'a> Judge<'a> {
                     - cast.direction() * contact.translation.value)
                     .length();
                 let off = 1e4 * self.noise + 1e-6 * self.gap;
-                if upper > 0.0 && (apart - self.gap).abs() > off {
+                if upper > 0.0 && (apart - cast.options().min_gap).abs() > off {
                     return Err(format!("points {apart:e} apart: {contact:?}"));
                 }
                 self.changed(&proof)?;
@@ -164,7 +183,8 @@ impl<'a> Judge<'a> {
         let much = 1e8 * self.noise;
         let lower = proof.lower + 2.0 * much / self.cast.direction().length();
         let more = SolidCertificate { lower, ..proof.clone() };
-        let other = self.cast.with_min_gap(self.gap + much).map_err(|e| e.to_string())?;
+        let min_gap = self.cast.options().min_gap + much;
+        let other = self.cast.with_min_gap(min_gap).map_err(|e| e.to_string())?;
         if self.cast.verify(&more).is_ok() {
             return Err("a larger bound is accepted".into());
         }

@@ -7,7 +7,7 @@
 //! enters it.
 
 use colltrans::solid::{Apart, Claim, SolidNear, SolidPair};
-use colltrans::{Distance, Pair, Pose, Solid, Within};
+use colltrans::{ConvexPolyhedron, Distance, Pair, Pose, Solid, Within};
 use glam::DVec3;
 
 use super::facets::{Triangle, triangles};
@@ -113,26 +113,31 @@ impl Setting {
         let square = surfaces(&placed);
         let inside = !square.is_zero() && self.is_inside(&pair, &placed)?;
         let noise = self.noise();
+        // The squared distance of the cores, and the radii.
         let right = if inside { Ratio::from_f64(0.0) } else { square };
+        let [r, s] = self.solids.each_ref().map(Solid::radius);
+        let swept = &Dyadic::new(r) + &Dyadic::new(s);
         let (found, proof) = pair.certified_distance().map_err(|e| e.to_string())?;
         let plain = pair.distance().map_err(|e| e.to_string())?;
         let say = |what: &str| format!("{what}: {found:?}, not {}", right.sqrt_to_f64());
         pair.verify(&proof).map_err(|e| say(&e.to_string()))?;
         for distance in [&found, &plain] {
-            check_bounds(distance, &right, noise).map_err(say)?;
+            check_bounds(distance, (&right, &swept), noise).map_err(say)?;
         }
-        check_points(&found.near, &placed).map_err(say)?;
+        check_points(&found.near, &placed, &swept).map_err(say)?;
+        self.check_surface_points(&found, noise).map_err(say)?;
         if found.lower > 0.0 && placed[0].len() * placed[1].len() <= MOST_PAIRS {
             let claims: Vec<Claim<Apart>> =
                 proof.cover.claims(&pair).ok_or("the cover does not fit")?;
             once([placed[0].len(), placed[1].len()], &claims)?;
         }
-        let length = right.sqrt_to_f64();
+        let length = (right.sqrt_to_f64() - swept.to_f64()).max(0.0);
         for length in [0.0, 0.5 * length, length, 1.5 * length, length + 8.0 * noise] {
-            check_within(&pair, length, &right).map_err(say)?;
+            check_within(&pair, length, (&right, &swept)).map_err(say)?;
         }
         let size = noise / (16.0 * f64::EPSILON);
-        Ok(match (inside, right.is_zero()) {
+        let meets = right <= square_between_cores(0.0, &swept);
+        Ok(match (inside, meets) {
             (true, _) => DistanceOutcome::Inside,
             (_, true) => DistanceOutcome::Touching,
             _ if length < 1e-6 * size => DistanceOutcome::Near,
@@ -148,7 +153,53 @@ impl Setting {
     /// Returns the noise, `32 u S`.
     fn noise(&self) -> f64 {
         let vertices = self.solids.each_ref().map(Solid::vertices);
-        16.0 * f64::EPSILON * size(vertices, self.poses.each_ref())
+        let radii: f64 = self.solids.each_ref().map(Solid::radius).iter().sum();
+        16.0 * f64::EPSILON * (size(vertices, self.poses.each_ref()) + radii)
+    }
+
+    /// Returns the setting with rounded solids. A radius is often about the distance of the solids.
+    ///
+    /// # Errors
+    /// The message of the library if it rejects the pair or a radius.
+    pub fn rounded(self, random: &mut Random) -> Result<Self, String> {
+        let distance = self.pair()?.distance().map_err(|e| e.to_string())?.upper;
+        let size =
+            self.solids.iter().map(|s| s.bounds().side_lengths().length()).fold(0.0, f64::max);
+        let mut radius = || match random.index(5) {
+            0 => 0.0,
+            1 => distance,
+            2 => distance * random.range(0.0, 1.0),
+            3 => 0.5 * distance,
+            _ => size * 10.0_f64.powf(random.range(-9.0, 0.0)),
+        };
+        let radii = [radius(), radius()].map(|r| if r < 1e-60 { 0.0 } else { r });
+        let Self { solids: [a, b], poses } = self;
+        let rounded = |solid: Solid, radius| solid.rounded(radius).map_err(|e| e.to_string());
+        Ok(Self { solids: [rounded(a, radii[0])?, rounded(b, radii[1])?], poses })
+    }
+
+    /// Checks that the points of an answer are at its distance, and at the radii from the cores.
+    fn check_surface_points(
+        &self,
+        found: &Distance<Solid>,
+        noise: f64,
+    ) -> Result<(), &'static str> {
+        let apart = found.on_moving.distance(found.on_fixed);
+        if found.lower > 0.0 && (apart - found.upper).abs() > 64.0 * noise {
+            return Err("points apart");
+        }
+        let points = [found.on_moving, found.on_fixed];
+        for ((solid, pose), point) in self.solids.iter().zip(&self.poses).zip(points) {
+            let probe = ConvexPolyhedron::from_points(&[point]).map_err(|_| "point")?;
+            let pair =
+                Pair::between(probe.at(Pose::IDENTITY), solid.at(*pose)).map_err(|_| "pair")?;
+            // The distance of the point from the rounded solid.
+            let off = pair.distance().map_err(|_| "probe")?.lower;
+            if off > 64.0 * noise {
+                return Err("point off the body");
+            }
+        }
+        Ok(())
     }
 
     /// Checks whether one of two bodies with disjoint surfaces contains a part of the other.
@@ -309,16 +360,27 @@ fn ray_crossing(triangle: &Triangle, point: &Vector, way: &Vector) -> Option<i32
     })
 }
 
-/// Checks that the bounds hold and are close enough.
-fn check_bounds(found: &Distance<Solid>, right: &Ratio, noise: f64) -> Result<(), &'static str> {
-    let square = |x: f64| Ratio::from_f64(x).times(&Ratio::from_f64(x));
-    if found.lower < 0.0 || square(found.lower) > *right {
+/// Returns the square of a length plus the radii.
+fn square_between_cores(length: f64, swept: &Dyadic) -> Ratio {
+    let sum = &Dyadic::new(length) + swept;
+    Ratio::new(&sum * &sum, Dyadic::new(1.0))
+}
+
+/// Checks that the bounds hold and are close enough, for a squared distance of the cores and the sum of the radii.
+fn check_bounds(
+    found: &Distance<Solid>,
+    (right, swept): (&Ratio, &Dyadic),
+    noise: f64,
+) -> Result<(), &'static str> {
+    let is_rounded = !swept.is_zero();
+    if found.lower < 0.0 || found.lower > 0.0 && square_between_cores(found.lower, swept) > *right {
         return Err("lower");
     }
-    if *right > square(found.upper) {
+    if *right > square_between_cores(found.upper, swept) {
         return Err("upper");
     }
-    if right.is_zero() != (found.upper == 0.0) {
+    let meets = *right <= square_between_cores(0.0, swept);
+    if !is_rounded && meets != (found.upper == 0.0) || !meets && found.upper == 0.0 {
         return Err("meeting");
     }
     if found.upper - found.lower > WIDEST * noise {
@@ -327,8 +389,12 @@ fn check_bounds(found: &Distance<Solid>, right: &Ratio, noise: f64) -> Result<()
     Ok(())
 }
 
-/// Checks that the points are at most as far apart as stated.
-fn check_points(near: &SolidNear, placed: &[Vec<Triangle>; 2]) -> Result<(), &'static str> {
+/// Checks that the points of the cores are at most as far apart as stated.
+fn check_points(
+    near: &SolidNear,
+    placed: &[Vec<Triangle>; 2],
+    swept: &Dyadic,
+) -> Result<(), &'static str> {
     let SolidNear::Points { triangles, weights, distance } = near else { return Ok(()) };
     let mean = |k: usize| {
         let corners = &placed[k][triangles[k] as usize];
@@ -341,12 +407,15 @@ fn check_points(near: &SolidNear, placed: &[Vec<Triangle>; 2]) -> Result<(), &'s
     let way = q.times(&s).minus(&p.times(&t));
     let whole = &s * &t;
     let square = Ratio::new(way.dot(&way), &whole * &whole);
-    let claimed = Ratio::from_f64(*distance);
-    if square <= claimed.times(&claimed) { Ok(()) } else { Err("points") }
+    if square <= square_between_cores(*distance, swept) { Ok(()) } else { Err("points") }
 }
 
-fn check_within(pair: &Pair<Solid>, length: f64, right: &Ratio) -> Result<(), &'static str> {
-    let square = Ratio::from_f64(length).times(&Ratio::from_f64(length));
+fn check_within(
+    pair: &Pair<Solid>,
+    length: f64,
+    (right, swept): (&Ratio, &Dyadic),
+) -> Result<(), &'static str> {
+    let square = square_between_cores(length, swept);
     let (said, proof) = pair.certified_within(length).map_err(|_| "within")?;
     let holds = |gap: f64| proof.is_some_and(|p| p.lower == gap && pair.verify(&p).is_ok());
     match said {

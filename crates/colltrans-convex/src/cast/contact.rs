@@ -33,15 +33,9 @@ impl Contact {
     pub fn witness_points(&self, cast: &Cast) -> WitnessPoints {
         let setting = &cast.setting;
         let certificate = &self.certificate;
-        let [p, q] = setting.weighted_points(&certificate.pairs, &certificate.weights);
-        let origin = setting.translations[0];
-        let cores = [
-            setting.moving_matrix * p + origin,
-            setting.fixed_matrix * q + setting.offset + origin,
-        ];
-        let between = cores[1] - (cores[0] + setting.direction * self.translation);
-        let normal = between.try_normalize().unwrap_or(self.normal);
-        let [on_moving, on_fixed] = setting.surface_points(cores, normal);
+        let cores = setting.core_points(&certificate.pairs, &certificate.weights);
+        let by = setting.direction * self.translation;
+        let [on_moving, on_fixed] = setting.surface_points(cores, by, self.normal);
         WitnessPoints { on_moving, on_fixed }
     }
 

@@ -1,85 +1,18 @@
-//! Queries about two placed convex bodies.
+//! Distances of two placed convex bodies.
 
 use glam::DVec3;
 
 use super::{PairProof, rounded, verify};
-use crate::answer::{
-    CertificateError, Depth, Distance, Enclosure, NearPoints, StartedFrom, Steps, Within,
-};
+use crate::answer::{CertificateError, Distance, NearPoints, StartedFrom, Steps, Within};
 use crate::body::{ConvexPolyhedron, Features, feature_in_plane};
 use crate::pair::{Pair, PairBody};
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::{TwoBodies, VertexPair, check_length};
-use crate::solve::nearest::{
-    DescentResult, Difference, GapPlane, NearestPairs, nearest_points, penetration_depth,
-};
+use crate::solve::nearest::{DescentResult, Difference, GapPlane, NearestPairs, nearest_points};
 
 /// Largest accepted difference of the bounds, in noises, in addition to the reach of the bodies beyond
 /// support points.
 pub(super) const MAX_BOUND_GAP: f64 = 64.0;
-
-impl Pair<'_> {
-    /// Computes the penetration depth: the length of the shortest translation, in any direction, that
-    /// separates the bodies.
-    ///
-    /// The bounds hold exactly, and differ by a few noises. Both are 0 if a plane is proven to separate the bodies. The
-    /// lower one is 0 if they touch, or are flat in a common plane.
-    ///
-    /// # Errors
-    /// Returns [`QueryError::NotConverged`] if the search ends without an answer.
-    ///
-    /// ```
-    /// # use colltrans::glam::DVec3;
-    /// # use colltrans::{ConvexPolyhedron, Pair, Pose};
-    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-    /// let there = Pose::from_translation(DVec3::new(0.75, 0.5, 0.5))?;
-    /// let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(there))?;
-    /// let depth = pair.depth()?;
-    /// assert!(depth.lower <= 0.25 && 0.25 <= depth.upper && depth.upper < 0.25 + 1e-13);
-    /// assert_eq!(depth.direction, DVec3::NEG_X);
-    /// assert!(pair.verify(&depth)? >= depth.lower);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn depth(&self) -> Result<Depth, QueryError> {
-        self.depth_until(f64::INFINITY)
-    }
-
-    /// Computes the penetration depth as [`Self::depth`] does, but ends as soon as the lower bound exceeds
-    /// `enough`, in world units. The bounds may differ by any amount then.
-    ///
-    /// # Errors
-    /// Returns [`QueryError::NotConverged`] if the search ends without an answer.
-    #[doc(hidden)]
-    #[inline]
-    pub fn depth_until(&self, enough: f64) -> Result<Depth, QueryError> {
-        if self.bodies.is_rounded() {
-            return rounded::depth(&self.bodies, enough);
-        }
-        core_depth(&self.bodies, enough)
-    }
-}
-
-/// Computes the penetration depth of the cores of two bodies. See [`Pair::depth_until`].
-pub(super) fn core_depth(bodies: &TwoBodies, enough: f64) -> Result<Depth, QueryError> {
-    let difference = Difference::new(bodies);
-    let mut found = nearest_points(&difference, &difference.depth_start(), None);
-    found.supports += 1;
-    if let Some(plane) = found.gap_plane(&difference).filter(|plane| plane.gap.gap > 0.0) {
-        let (direction, enclosure) = (-plane.gap.normal, Enclosure::default());
-        let steps = found.steps();
-        return Ok(Depth { lower: 0.0, upper: 0.0, direction, enclosure, near: None, steps });
-    }
-    let best = penetration_depth(&difference, &found, enough);
-    let (lower, upper) = (best.lower, best.upper);
-    let tolerance = MAX_BOUND_GAP * difference.noise.point_error() + best.excess;
-    if lower <= enough && upper - lower > tolerance {
-        let reason = Stalled::Distance { lower, upper, tolerance };
-        return Err(QueryError::NotConverged { reason });
-    }
-    let (direction, enclosure) = (best.outward, best.enclosure);
-    let steps = Steps { supports: best.supports, ..Steps::default() };
-    Ok(Depth { lower, upper, direction, enclosure, near: None, steps })
-}
 
 impl PairBody for ConvexPolyhedron {
     type PairProof<'p> = PairProof<'p>;
@@ -163,7 +96,7 @@ fn distance_of_search(
         let reason = Stalled::Distance { lower, upper: near.distance, tolerance };
         return Err(QueryError::NotConverged { reason });
     }
-    let [on_moving, on_fixed] = core_points_in_world(bodies, &near);
+    let [on_moving, on_fixed] = bodies.core_points(&near.pairs, &near.weights);
     let distance = Distance {
         lower,
         upper: near.distance,
@@ -184,19 +117,12 @@ fn distance_of_search(
 /// Those of rounded bodies are on the round surfaces. If the bodies meet, both are one point of both bodies.
 #[inline]
 pub fn nearest_points_in_world(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
-    let cores = core_points_in_world(bodies, near);
+    let cores = bodies.core_points(&near.pairs, &near.weights);
     if bodies.is_rounded() {
-        rounded::surface_points(bodies, cores, near.distance, None)
+        rounded::surface_points(bodies, cores, near.distance, DVec3::ZERO)
     } else {
         cores
     }
-}
-
-/// Returns the nearest points of the cores, in the world, rounded.
-fn core_points_in_world(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
-    let [p, q] = bodies.weighted_points(&near.pairs, &near.weights);
-    let origin = bodies.translations[0];
-    [bodies.moving_matrix * p + origin, bodies.fixed_matrix * q + bodies.offset + origin]
 }
 
 /// Returns the features of the bodies in the planes perpendicular to the normal of `plane`. `noise` is the

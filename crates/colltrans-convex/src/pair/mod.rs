@@ -1,6 +1,7 @@
 //! Queries about two placed bodies without a direction: distance, proximity and penetration depth.
 
 mod convex;
+mod depth;
 mod rounded;
 mod verify;
 

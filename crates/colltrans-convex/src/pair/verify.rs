@@ -84,14 +84,14 @@ pub(super) fn verify_depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, Cer
     let length =
         if reach < 0.0 { most_square.sqrt().next_up() } else { least_square.sqrt().next_down() };
     let upper = (reach / length).next_up();
-    let [least, most] = bodies.core_gap_bounds(0.0);
-    let upper = if most == 0.0 { upper } else { (upper + most).next_up() }.max(0.0);
+    let (is_rounded, [least, most]) = (bodies.is_rounded(), bodies.core_gap_bounds(0.0));
+    let upper = if is_rounded { (upper + most).next_up() } else { upper }.max(0.0);
     if depth.upper.is_nan() || depth.upper < upper {
         return Err(CertificateError::Bound { proven: upper, claimed: depth.upper });
     }
     let proven = if depth.enclosure != Enclosure::default() {
         let radius = enclosed_radius(bodies, &depth.enclosure)?;
-        if least == 0.0 { radius } else { (radius + least).next_down() }
+        if is_rounded { (radius + least).next_down() } else { radius }
     } else if let Some(near) = &depth.near {
         depth_by_points(bodies, near)?
     } else {

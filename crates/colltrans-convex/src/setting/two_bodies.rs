@@ -156,24 +156,28 @@ impl<B: VertexHull> TwoBodies<'_, B> {
         height_bounds::distance_lower_bound(normal, fixed, moving, self.offset_and_error())
     }
 
+    /// Returns lower and upper bounds of the sum of both radii, equal if it is exact. `None` if no body is rounded.
+    #[inline]
+    fn radii_bounds(&self) -> Option<[f64; 2]> {
+        let [r, s] = [self.moving.radius(), self.fixed.radius()];
+        (r + s != 0.0).then(|| sum_bounds(r, s))
+    }
+
+    /// Checks whether a body is rounded.
+    #[inline]
+    pub fn is_rounded(&self) -> bool {
+        self.radii_bounds().is_some()
+    }
+
     /// Returns lower and upper bounds of the sum of `min_gap` and the radii of both bodies, in world units. They
     /// are equal if the sum is exact.
     ///
     /// The distance of rounded bodies is at least `min_gap` where that of their cores is at least this sum.
     #[inline]
     pub fn core_gap_bounds(&self, min_gap: f64) -> [f64; 2] {
-        let radii = [self.moving.radius(), self.fixed.radius()];
-        if radii == [0.0; 2] {
-            return [min_gap; 2];
-        }
-        let [low, high] = sum_bounds(radii[0], radii[1]);
-        [sum_bounds(low, min_gap)[0], sum_bounds(high, min_gap)[1]]
-    }
-
-    /// Checks whether a body is rounded.
-    #[inline]
-    pub fn is_rounded(&self) -> bool {
-        self.moving.radius() + self.fixed.radius() != 0.0
+        self.radii_bounds().map_or([min_gap; 2], |[low, high]| {
+            [sum_bounds(low, min_gap)[0], sum_bounds(high, min_gap)[1]]
+        })
     }
 
     /// Returns the gap that the plane with this normal proves between the cores of the bodies, in world units,
@@ -194,18 +198,17 @@ impl<B: VertexHull> TwoBodies<'_, B> {
     /// Returns a gap of the cores less both radii, rounded down; the gap itself if no body is rounded.
     #[inline]
     pub fn less_radii(&self, core_gap: f64) -> f64 {
-        let [_, radii] = self.core_gap_bounds(0.0);
-        if radii == 0.0 { core_gap } else { (core_gap - radii).next_down() }
+        self.radii_bounds().map_or(core_gap, |[_, radii]| (core_gap - radii).next_down())
     }
 
     /// Returns an upper bound of the distance of the cores less both radii, rounded up; 0 if that is negative, and the
     /// bound itself if no body is rounded.
     #[inline]
     pub fn distance_less_radii(&self, of_cores: f64) -> f64 {
-        match self.core_gap_bounds(0.0)[0] {
-            0.0 => of_cores,
-            radii if of_cores <= radii => 0.0,
-            radii => (of_cores - radii).next_up(),
+        match self.radii_bounds() {
+            None => of_cores,
+            Some([radii, _]) if of_cores <= radii => 0.0,
+            Some([radii, _]) => (of_cores - radii).next_up(),
         }
     }
 
@@ -229,11 +232,21 @@ impl<B: VertexHull> TwoBodies<'_, B> {
     /// Returns the points of the surfaces of the rounded bodies that correspond to points of their cores, in the
     /// world: each moved by its body's radius towards the other body, along the unit vector `normal`.
     #[inline]
-    pub fn surface_points(&self, [p, q]: [DVec3; 2], normal: DVec3) -> [DVec3; 2] {
+    pub fn surface_points_along(&self, [p, q]: [DVec3; 2], normal: DVec3) -> [DVec3; 2] {
         if !self.is_rounded() {
             return [p, q];
         }
         [p + normal * self.moving.radius(), q - normal * self.fixed.radius()]
+    }
+
+    /// Returns [`Self::surface_points_along`] the direction between the points, after the moving body is translated by
+    /// `by`. `normal` replaces this direction if the points coincide.
+    #[inline]
+    pub fn surface_points(&self, [p, q]: [DVec3; 2], by: DVec3, normal: DVec3) -> [DVec3; 2] {
+        if !self.is_rounded() {
+            return [p, q];
+        }
+        self.surface_points_along([p, q], (q - (p + by)).try_normalize().unwrap_or(normal))
     }
 
     /// Returns a bound on the sum of the distances by which input points lie outside of their bodies, in
@@ -245,6 +258,19 @@ impl<B: VertexHull> TwoBodies<'_, B> {
 }
 
 impl TwoBodies<'_> {
+    /// Returns the weighted sums of several pairs' vertices in the world, rounded: a point of each core. See
+    /// [`Self::weighted_points`].
+    #[inline]
+    pub(crate) fn core_points<const N: usize>(
+        &self,
+        pairs: &[VertexPair; N],
+        weights: &[f64; N],
+    ) -> [DVec3; 2] {
+        let [p, q] = self.weighted_points(pairs, weights);
+        let origin = self.translations[0];
+        [self.moving_matrix * p + origin, self.fixed_matrix * q + self.offset + origin]
+    }
+
     /// Returns the vertices of a pair, in the frames of the moving and of the fixed body.
     #[inline]
     pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {

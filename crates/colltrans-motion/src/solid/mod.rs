@@ -263,7 +263,7 @@ impl<'a> MotionCast<'a, Solid> {
         let points = scene.as_ref().map(|scene| {
             let cores = weighted_points(scene, spot.triangles, nearest.weights);
             let points =
-                if is_apart { bodies.surface_points(cores, nearest.normal) } else { cores };
+                if is_apart { bodies.surface_points_along(cores, nearest.normal) } else { cores };
             points.map(|point| point + bodies.translations[0])
         });
         let normal = is_apart.then_some(nearest.normal);

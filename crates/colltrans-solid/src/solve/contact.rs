@@ -199,7 +199,7 @@ pub(crate) fn contact_of_facets(
         feature_at(side.solid, triangle, (at, side.matrix.transpose() * normal), scene.noise)
     };
     let cores = [on_f.nominal_point(moving), on_g.nominal_point(fixed)];
-    let [point_on_moving, point_on_fixed] = scene.setting.surface_points(cores, normal);
+    let [point_on_moving, point_on_fixed] = scene.setting.surface_points_along(cores, normal);
     SolidContact {
         translation,
         offset_distance,

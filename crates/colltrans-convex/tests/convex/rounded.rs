@@ -328,3 +328,171 @@ fn points_of_closer_bodies_are_on_the_round_surfaces() {
     let [common, same] = points(1.25, 0.0);
     assert!(common == same && common.z >= 0.75 && common.z <= 1.0, "{common}");
 }
+
+#[test]
+fn spheres_meet_faces_edges_and_vertices_of_boxes_where_closed_forms_say() {
+    let mut random = Random::new(11);
+    let mut counts = [0; 4];
+    for _ in 0..cases(1000) {
+        let half =
+            DVec3::new(random.range(0.2, 2.0), random.range(0.2, 2.0), random.range(0.2, 2.0));
+        let radius = random.range(0.1, 1.5);
+        let ball = sphere(radius);
+        let table = cuboid(-half, half);
+        // Towards a point of the box or beside it, from outside.
+        let target = random.vector() * half * 1.2;
+        let from = target + random.direction() * 8.0;
+        let direction = (target - from).normalize();
+        let start = Pose::from_translation(from).expect("a pose");
+        let cast = Cast::new(ball.at(start), table.at(Pose::IDENTITY), direction).expect("a query");
+        // Coordinates in which the centre is outside of the box.
+        let outside = |at: DVec3| (at - at.clamp(-half, half)).to_array().map(|x| x != 0.0);
+        match judged_outcome(&cast) {
+            Outcome::Contact(contact) => {
+                let center = from + direction * contact.translation;
+                let nearest = center.clamp(-half, half);
+                let off = center.distance(nearest) - radius;
+                assert!(off.abs() <= 1e-12, "{off:e} {contact:?}");
+                let normal = (nearest - center).normalize();
+                // A plane that is off by this angle proves a bound that is lower by at most 15 noises.
+                let slack = (30.0 * 16.0 * f64::EPSILON * 16.0 / radius).sqrt();
+                assert!(contact.normal.distance(normal) <= slack, "{} {normal}", contact.normal);
+                let points = contact.witness_points(&cast);
+                assert!(points.on_fixed.distance(nearest) <= slack, "{points:?} {nearest}");
+                counts[outside(center).iter().filter(|is| **is).count()] += 1;
+            }
+            Outcome::Separated(_) | Outcome::Grazing(_) => {}
+        }
+        let pair = Pair::new(ball.at(start), table.at(Pose::IDENTITY)).expect("a pair");
+        let (distance, _) = judged_pair(&pair);
+        let truth = from.distance(from.clamp(-half, half)) - radius;
+        assert!((distance.upper - truth.max(0.0)).abs() <= 1e-12, "{truth} {distance:?}");
+    }
+    let [inside, faces, edges, vertices] = counts;
+    assert_eq!(inside, 0);
+    assert!(faces.min(edges).min(vertices) > cases(30), "{counts:?}");
+}
+
+#[test]
+fn a_ball_stops_in_the_corner_between_three_planes() {
+    // Walls below, behind and beside; the ball moves along the diagonal into the corner.
+    let ball = sphere(0.75);
+    let walls = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
+        let low = DVec3::splat(-9.0);
+        (cuboid(low, DVec3::splat(9.0) - axis * 9.0), axis)
+    });
+    let start = at(2.0, 3.0, 2.5);
+    let stops = walls.map(|(wall, axis)| {
+        let cast = Cast::new(ball.at(start), wall.at(Pose::IDENTITY), DVec3::NEG_ONE);
+        let contact = judged_contact(&cast.expect("a query"));
+        assert!(contact.normal.distance(-axis) < 1e-14);
+        contact.translation
+    });
+    for (stop, expected) in stops.into_iter().zip([1.25, 2.25, 1.75]) {
+        assert!((stop - expected).abs() < 1e-14, "{stops:?}");
+    }
+}
+
+#[test]
+fn capsules_meet_each_other_where_closed_forms_say() {
+    let mut random = Random::new(23);
+    let mut contacts = 0;
+    for _ in 0..cases(1000) {
+        let [r, s] = [0; 2].map(|_| random.range(0.05, 0.8));
+        let halves = [0; 2].map(|_| random.direction() * random.range(0.0, 2.0));
+        let (p, q) = (capsule(halves[0], r), capsule(halves[1], s));
+        let from = random.direction() * 6.0;
+        let start = Pose::from_translation(from).expect("a pose");
+        let direction = (random.direction() - from).normalize();
+        let cast = Cast::new(p.at(start), q.at(Pose::IDENTITY), direction).expect("a query");
+        let pair = Pair::new(p.at(start), q.at(Pose::IDENTITY)).expect("a pair");
+        let apart =
+            |at: DVec3| segment_distance([at - halves[0], at + halves[0]], [-halves[1], halves[1]]);
+        let (distance, _) = judged_pair(&pair);
+        let truth = (apart(from) - r - s).max(0.0);
+        assert!((distance.upper - truth).abs() <= 1e-12, "{truth} {distance:?}");
+        if let Outcome::Contact(contact) = judged_outcome(&cast) {
+            let off = apart(from + direction * contact.translation) - r - s;
+            assert!(off.abs() <= 1e-12, "{off:e}");
+            contacts += 1;
+        }
+    }
+    assert!(contacts > cases(300), "{contacts}");
+}
+
+/// The distance of two segments: of their lines if its ends are within both, otherwise from an end to the other one.
+fn segment_distance(a: [DVec3; 2], b: [DVec3; 2]) -> f64 {
+    let from_point = |p: DVec3, [a, b]: [DVec3; 2]| {
+        let along = b - a;
+        let t = (p - a).dot(along) / along.length_squared().max(1e-300);
+        p.distance(a + along * t.clamp(0.0, 1.0))
+    };
+    let ends = [from_point(a[0], b), from_point(a[1], b), from_point(b[0], a), from_point(b[1], a)];
+    let least = ends.into_iter().fold(f64::INFINITY, f64::min);
+    let (u, v, w) = (a[1] - a[0], b[1] - b[0], a[0] - b[0]);
+    let [uu, uv, vv, uw, vw] = [u.dot(u), u.dot(v), v.dot(v), u.dot(w), v.dot(w)];
+    let det = uu * vv - uv * uv;
+    let [s, t] = [uv * vw - vv * uw, uu * vw - uv * uw].map(|x| x / det);
+    let are_within = det > 0.0 && (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
+    if are_within { least.min((w + u * s - v * t).length()) } else { least }
+}
+
+/// parry issue 429: a ball stops up to 139 mm short of a large floor.
+#[test]
+fn published_ball_lands_on_large_cuboids() {
+    let ball = sphere(0.5166);
+    for half in [5.0, 50.0, 500.0, 5000.0] {
+        let floor = cuboid(DVec3::new(-half, -1.0, -half), DVec3::new(half, 0.0, half));
+        for i in 0..cases(100) {
+            let height = 1.177 + 2e-4 * i as f64;
+            let aside = 9e-3 * half * i as f64;
+            let start = at(aside, height, -0.7 * aside);
+            let cast = Cast::new(ball.at(start), floor.at(Pose::IDENTITY), DVec3::NEG_Y);
+            let contact = judged_contact(&cast.expect("a query"));
+            let off = (contact.translation - (height - 0.5166)).abs();
+            assert!(off <= contact.certificate.rounding, "{half}, step {i}: {off:e}");
+        }
+    }
+}
+
+/// `PhysX` issue 501: a vertical capsule swept down onto the edge of a triangle enters it.
+#[test]
+fn published_capsule_stops_at_the_edge_of_a_triangle() {
+    let capsule = capsule(DVec3::Y * 0.5, 0.5);
+    let corners = [DVec3::ZERO, DVec3::new(0.0, 0.0, 4.0), DVec3::new(4.0, 0.0, 0.0)];
+    let triangle = ConvexPolyhedron::from_points(&corners).expect("a triangle");
+    // The edge from the origin along z; the capsule is beside the triangle, or over it.
+    for aside in [0.4999, 0.4, 0.1, 1e-9, 0.0, -0.3] {
+        let start = at(-aside, 3.0, 1.0);
+        let cast = Cast::new(capsule.at(start), triangle.at(Pose::IDENTITY), DVec3::NEG_Y);
+        let contact = judged_contact(&cast.expect("a query"));
+        let beside = f64::max(aside, 0.0);
+        let expected = 3.0 - 0.5 - (0.25 - beside * beside).sqrt();
+        assert!((contact.translation - expected).abs() < 1e-12, "{aside}: {contact:?}");
+    }
+}
+
+/// coal issue 351: a sphere of radius 55 beside a cylinder of radius 136, which it enters by 0.061.
+#[test]
+fn published_sphere_enters_a_cylinder() {
+    let sides = 4000;
+    let points: Vec<DVec3> = [-50.0, 50.0]
+        .into_iter()
+        .flat_map(|z| colltrans_testkit::shapes::ring(sides, 136.0, z))
+        .collect();
+    let cylinder = ConvexPolyhedron::from_points(&points).expect("a prism");
+    let rotation = glam::DMat3::from_cols(DVec3::NEG_Z, DVec3::X, DVec3::NEG_Y);
+    let placed = Pose::from_matrix(rotation, DVec3::new(0.0, 0.0, 776.5)).expect("a pose");
+    let (center, ball) = (DVec3::new(140.834, -45.449, 905.432), sphere(55.0));
+    let start = Pose::from_translation(center).expect("a pose");
+    let pair = Pair::new(ball.at(start), cylinder.at(placed)).expect("a pair");
+    let depth = pair.depth().expect("an answer");
+    RoundedJudge::new(pair).check_depth(&depth, false).expect("a right depth");
+    let radial = center.x.hypot(center.z - 776.5);
+    let truth = 55.0 + 136.0 - radial;
+    let chord_error = 136.0 * (1.0 - (PI / sides as f64).cos());
+    assert!((0.06..0.063).contains(&truth) && chord_error < 1e-4);
+    assert!(depth.lower <= truth && truth <= depth.upper + chord_error, "{truth} {depth:?}");
+    assert!(depth.lower > 0.06, "{depth:?}");
+    assert_eq!(pair.distance().expect("an answer").upper, 0.0);
+}

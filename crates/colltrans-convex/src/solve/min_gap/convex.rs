@@ -184,9 +184,11 @@ fn find_gap_crossing<O: Observer>(
     let bodies = ConvexDifference { setting, noise: line.noise, pairs, observer, supports: 0 };
     let mut search = GapSearch { options, line, bodies, steps: Steps::default() };
     search.bodies.report_begin();
-    let start = search.first_plane(last);
-    search.bodies.observer.phase_ended(Phase::Setup);
-    let found = bound_crossing(&mut search.bodies, &line, start, f64::INFINITY);
+    let found = search.crossing_of_rounded_segment().unwrap_or_else(|| {
+        let start = search.first_plane(last);
+        search.bodies.observer.phase_ended(Phase::Setup);
+        bound_crossing(&mut search.bodies, &line, start, f64::INFINITY)
+    });
     search.bodies.observer.phase_ended(Phase::Finish);
     search.steps.pivots = found.samples;
     next.start = WarmStart::WithMinGap { normal: found.plane.normal, pairs: search.bodies.pairs };
@@ -209,6 +211,52 @@ impl<'s, 'a, 'o, O: Observer> GapSearch<'s, 'a, 'o, O> {
     /// Returns the work done, with the number of support points.
     fn total_steps(&self) -> Steps {
         Steps { supports: self.bodies.supports, ..self.steps }
+    }
+
+    /// Computes the crossing in closed form, of spheres, or of a sphere and a capsule: `M` is a point or a segment.
+    /// A line enters the ball about an end of the segment if it enters the cylinder about the whole edge beyond this end.
+    ///
+    /// Returns `None` for other bodies, if there is no crossing, or if rounding does not explain the difference of the
+    /// bounds.
+    fn crossing_of_rounded_segment(&mut self) -> Option<FoundBounds<'s, 'a, 'o, O>> {
+        let (setting, line) = (self.bodies.setting, self.line);
+        let [p, q] = [setting.moving.dimension(), setting.fixed.dimension()].map(u32::from);
+        if p + q > 1 || !setting.is_rounded() {
+            return None;
+        }
+        let pairs = [VertexPair::from_indices(0, 0), VertexPair::from_indices(p, q)];
+        let ends = pairs.map(|pair| setting.difference_point(pair));
+        let edge = ends[1] - ends[0];
+        let (mut s, mut share) = (line.estimate_crossing(ends[0]), 0.0);
+        if p + q == 1 {
+            s = line.edge_crossing(ends);
+            share = (line.unit * s? - ends[0]).dot(edge) / edge.length_squared();
+            if !(0.0..=1.0).contains(&share) {
+                let end = u8::from(share > 0.0);
+                share = f64::from(end);
+                s = line.estimate_crossing(ends[usize::from(end)]);
+            }
+        }
+        let point = ends[0] + edge * share;
+        let mut normal = point - line.unit * s?;
+        if share > 0.0 && share < 1.0 {
+            normal -= edge * (normal.dot(edge) / edge.length_squared());
+        }
+        let normal = normal.try_normalize()?;
+        let lowest = pairs[usize::from(normal.dot(edge) < 0.0)];
+        self.bodies.supports += 1;
+        let plane = self.bodies.report_plane(normal, lowest, setting.input_excess());
+        let lower = line.lower_bound(&plane)?;
+        let upper = line.crossing_upper_bound(point)?;
+        let spot = if share < 1.0 {
+            ([pairs[0], pairs[1], pairs[1]], [1.0 - share, share, 0.0])
+        } else {
+            ([pairs[1]; 3], [1.0, 0.0, 0.0])
+        };
+        let near_point = Some(NearPoint { upper, point, spot });
+        let is_explained = upper - lower <= line.bound_width(&plane, MAX_WIDTH);
+        let is_passing = false;
+        is_explained.then_some(CrossingBounds { plane, lower, near_point, samples: 0, is_passing })
     }
 
     /// Returns the plane to start with: that of the last search or the one perpendicular to the line, whichever

@@ -182,16 +182,20 @@ impl GapLine {
         let from_sample = |k: usize| look.corners[k] - self.unit * s;
         match look.count {
             1 => self.gap_crossing(from_sample(0), self.min_gap),
-            2 => {
-                let edge = (from_sample(1) - from_sample(0)).try_normalize()?;
-                let across = |v: DVec3| v - edge * v.dot(edge);
-                let (d, a) = (across(self.unit), across(from_sample(0)));
-                let [dd, da, aa] = [d.dot(d), d.dot(a), a.dot(a) - self.min_gap * self.min_gap];
-                let square = da * da - dd * aa;
-                (square >= 0.0 && dd > 0.0).then(|| (da - square.sqrt()) / dd)
-            }
+            2 => self.edge_crossing([from_sample(0), from_sample(1)]),
             _ => None,
         }
+    }
+
+    /// Returns the first `s` at which the infinite line through two points is as near as the gap to `s d`. `None` if
+    /// there is no such `s`, or if the points coincide.
+    fn edge_crossing(&self, [from, to]: [DVec3; 2]) -> Option<f64> {
+        let edge = (to - from).try_normalize()?;
+        let across = |v: DVec3| v - edge * v.dot(edge);
+        let (d, a) = (across(self.unit), across(from));
+        let [dd, da, aa] = [d.dot(d), d.dot(a), a.dot(a) - self.min_gap * self.min_gap];
+        let square = da * da - dd * aa;
+        (square >= 0.0 && dd > 0.0).then(|| (da - square.sqrt()) / dd)
     }
 }
 

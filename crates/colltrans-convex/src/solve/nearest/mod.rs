@@ -12,6 +12,7 @@
 //!   support points ([`TwoBodies::support_with_excess`]). Near contact, if this bound is not positive, the heights of
 //!   all vertices are computed nearly without rounding ([`TwoBodies::input_core_gap`]).
 
+mod closed_form;
 mod depth;
 mod gjk;
 pub mod simplex;
@@ -318,10 +319,15 @@ pub fn nearest_points_within_share(
     )
 }
 
-/// Searches in up to three stages, until `goal` is reached: by a descent in rounded numbers, by the plane of the
-/// simplex, and by a descent in numbers of twice the precision.
+/// Computes nearest points in closed form if possible. Otherwise searches in up to three stages, until `goal` is reached:
+/// by a descent in rounded numbers, by the plane of the simplex, and by a descent in numbers of twice the precision.
 #[inline]
 fn search_until(difference: &Difference, start: &NearestPairs, goal: &Goal) -> DescentResult {
+    if difference.is_of_rounded_segments()
+        && let Some(found) = closed_form::nearest_of_segments(difference, goal)
+    {
+        return found;
+    }
     let mut found =
         DescentResult { supports: u32::from(start.is_empty()), ..DescentResult::unbounded() };
     let simplex = starting_simplex(difference, start);

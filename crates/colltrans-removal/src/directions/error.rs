@@ -30,6 +30,29 @@ pub enum FreeError {
         /// A common point.
         place: Overlap,
     },
+    /// No body is rounded, so the free directions are not a half-space.
+    #[error("no body is rounded: use FreeDirections")]
+    NotRounded,
+    /// Rounded bodies are apart. They block a cone with a curved border.
+    #[error(
+        "the rounded bodies are {distance} apart, and their blocked directions have a curved border: query the \
+         clearance along single directions"
+    )]
+    Apart {
+        /// A lower bound of the distance.
+        distance: f64,
+    },
+    /// Rounded bodies overlap by more than the tolerance, so no direction is free.
+    #[error(
+        "the rounded bodies overlap by up to {depth}, more than the tolerance {tolerance}, so no direction is free; \
+         increase the tolerance"
+    )]
+    Deep {
+        /// An upper bound of the depth.
+        depth: f64,
+        /// The tolerance.
+        tolerance: f64,
+    },
     /// The search was cancelled.
     #[error("cancelled")]
     Cancelled,

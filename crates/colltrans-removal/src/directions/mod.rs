@@ -9,7 +9,8 @@
 //! Data flow: `bodies` (vertices, trees down to facets) -> `line` (great circles, exact signs) -> `cone`,
 //! `window` (pairs of nodes that block no direction of a rectangle), `remainder`, `inner` -> `proof` (claims
 //! about cells), `verify` (their check) -> `search` -> [`FreeDirections`]. `region` joins free pieces,
-//! `lower_dimensional` finds free arcs and isolated directions, `blocker` decides single cells.
+//! `lower_dimensional` finds free arcs and isolated directions, `blocker` decides single cells. `half_space` has the
+//! directions of rounded convex bodies in contact.
 
 mod answer;
 mod blocker;
@@ -17,6 +18,7 @@ mod bodies;
 mod cell;
 mod cone;
 mod error;
+mod half_space;
 mod inner;
 mod line;
 mod lower_dimensional;
@@ -33,6 +35,7 @@ pub(crate) use bodies::{Bodies, NodeBounds};
 pub use answer::{CellKind, FreeCell, FreeDirections, FreePiece, Verdict};
 pub use blocker::{CellBlocker, DirectionCell};
 pub use error::FreeError;
+pub use half_space::{FreeHalfSpace, HalfSpaceVerdict};
 pub use inner::InnerBox;
 pub use line::PlaneVertex;
 pub use lower_dimensional::{FreeArc, FreePlane, FreePoint, PlaneFacets};

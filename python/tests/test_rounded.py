@@ -4,6 +4,9 @@ import copy
 import json
 import math
 import pickle
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +20,7 @@ from colltrans import (
     Motion,
     Obstacles,
     QueryError,
+    Robot,
     Solid,
     cast,
     cast_many,
@@ -103,6 +107,66 @@ def test_motions_and_obstacles_accept_rounded_bodies() -> None:
     nearest: Any = scene.nearest(BALL)
     assert nearest.obstacle == names[0]
     assert nearest.upper == pytest.approx(2)
+
+
+def _scene_answers() -> list[tuple[str, Any]]:
+    scene = Obstacles()
+    for k in (2, 3):
+        scene.add(BALL, [3.0 * k, 0, 0])
+    scene.add(CUBE.rounded(0.25), [0, 0, -4])
+    pill = ConvexPolyhedron.capsule([-1, 0, 0], [1, 0, 0], 0.25)
+    return [
+        ("nearest", scene.nearest(pill)),
+        ("within", scene.within(pill, 2.6)),
+        ("clearance", scene.clearance(pill, DOWN)),
+        ("sliding", scene.clearance(pill, DOWN, pose=[0, -1.5, 0])),
+    ]
+
+
+def _moving_answers() -> list[tuple[str, Any]]:
+    swing = Motion.turn([0, 0, 0], [0, 1, 0], degrees=90, pose=[0, 0, 4])
+    floor = ConvexPolyhedron.cuboid([-9, -9, -1], [9, 9, 0]).rounded(0.125)
+    arm = Robot.read(ROOT / "data" / "arm.urdf")
+    rows = [[-1.2, 0.6, 0], [0.9, 0.3, 0.05]]
+    beside = ConvexPolyhedron.sphere(0.1, center=[1.2, 0.4, 0.3])
+    away = ConvexPolyhedron.sphere(0.1, center=[0.2, -1.2, 0.3])
+    return [
+        ("motion", first_contact(BALL, floor, swing)),
+        ("motion with a gap", first_contact(BALL, floor, swing, min_gap=0.25)),
+        ("path", arm.first_contact(rows, {"ball": beside})),
+        ("path with a gap", arm.first_contact(rows, {"ball": beside}, min_gap=0.125)),
+        ("free path", arm.first_contact(rows, {"ball": away})),
+    ]
+
+
+@pytest.mark.parametrize("answers", [_scene_answers, _moving_answers])
+def test_both_checkers_agree_about_other_radii(
+    cli: Path, tmp_path: Path, answers: Callable[[], list[tuple[str, Any]]]
+) -> None:
+    def accepted(text: str) -> bool:
+        saved = tmp_path / "proof.json"
+        saved.write_text(text)
+        told = subprocess.run([cli, "verify", saved], capture_output=True)
+        assert told.returncode in (0, 6)
+        try:
+            report = check.check(text)
+        except check.RefusedError:
+            assert told.returncode == 6
+            return False
+        assert report.holds and not report.partly and told.returncode == 0
+        return True
+
+    for name, answer in answers():
+        text = answer.proof_json()
+        assert accepted(text), name
+        refused = 0
+        for body, shape in enumerate(json.loads(text)["bodies"]):
+            for change in (-1e-3, 1e-9, 1.0):
+                file = json.loads(text)
+                if "radius" in shape["convex"] and shape["convex"]["radius"] + change > 0:
+                    file["bodies"][body]["convex"]["radius"] += change
+                    refused += not accepted(json.dumps(file))
+        assert refused, name
 
 
 def test_copies_keep_the_radius() -> None:

@@ -17,6 +17,9 @@ Notation: moving body ``P``, fixed body ``Q``, direction ``d``, all points in th
 - *Slides.* ``(max_P n'.p - min_Q n'.q) / |n'|`` over all vertices, where ``n' = n (d.d) - d (n.d)``
   is the part of ``n`` across the direction: an upper bound of the overlap of the shadows. The
   claimed overlap must not be smaller.
+- *Rounded bodies* are hulls of points swept by a ball. The sum ``r`` of both radii is added to each
+  gap: bodies are ``g`` apart where the hulls are ``g + r`` apart, and bodies whose hulls are ``x``
+  apart, or ``x`` deep, have the depth ``r - x``, or ``r + x``. Boxes are wider by the radius.
 - *Bodies.* The faces of a convex body, if it has any, form a closed surface with all vertices, and
   no neighbouring vertex is far above a face. No proof depends on the faces. If they may not be
   those of the hull of the vertices, this is reported as unchecked; ``colltrans verify`` rejects
@@ -904,7 +907,7 @@ def distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
         report.holds.append(f"the bodies are at least {float(lower)!r} apart")
     if near is None:
         return
-    near = fields(near, "pairs weights distance")
+    near = fields(near, _NEAR)
     upper, ends = number(near["distance"]), ends_of(moving, fixed, listed(near["pairs"], 4))
     shares = [number(weight) for weight in listed(near["weights"], 4)]
     if upper == 0:
@@ -924,6 +927,20 @@ def are_points_near(
     p, q = (mean([end[k] for end in ends], shares) for k in (0, 1))
     between = minus(q, p)
     return above(length, dot(between, between))
+
+
+#: The fields of a claim that two points are near each other.
+_NEAR = "pairs weights distance"
+
+
+def are_cores_near(near: Any, ends: Sequence[tuple[Vector, Vector]], length: Fraction) -> bool:
+    """Checks whether the pairs of a claim prove that hulls are at most a length apart.
+
+    Either the weighted means are, or the differences enclose the origin if the claim is 0.
+    """
+    shares = [number(weight) for weight in listed(near["weights"], 4)]
+    enclosed = number(near["distance"]) == 0 and encloses([minus(q, p) for p, q in ends])
+    return (enclosed and length >= 0) or are_points_near(ends, shares, length)
 
 
 def apart(p: Vector, q: Vector, upper: Fraction, report: Report, swept: Fraction = _NO_GAP) -> None:
@@ -999,12 +1016,8 @@ def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     surface = fields(claim["enclosure"], "pairs triangles normals")
     near = claim["near"]
     if lower > 0 and near is not None and not any(listed(part) for part in surface.values()):
-        near = fields(near, "pairs weights distance")
-        ends = ends_of(moving, fixed, listed(near["pairs"], 4))
-        shares = [number(weight) for weight in listed(near["weights"], 4)]
-        enclosed = number(near["distance"]) == 0 and encloses([minus(q, p) for p, q in ends])
-        rest = swept - lower
-        if not swept or not ((enclosed and rest >= 0) or are_points_near(ends, shares, rest)):
+        ends = ends_of(moving, fixed, listed(fields(near, _NEAR)["pairs"], 4))
+        if not swept or not are_cores_near(near, ends, swept - lower):
             raise RefusedError(f"the points do not prove a depth of {float(lower)!r}")
         report.holds.append(f"no translation below {float(lower)!r} separates them")
     elif lower > 0 or any(listed(part) for part in surface.values()):
@@ -1062,10 +1075,10 @@ _NEVER = None
 
 
 def box(body: Body) -> Bounds:
-    """Returns the least and the largest coordinates of a body."""
+    """Returns the least and the largest coordinates of a body, including its radius."""
     axes = [tuple(Fraction(i == k) for k in range(3)) for i in range(3)]
     all_heights = [list(body.heights((x, y, z))) for x, y, z in axes]
-    return [min(h) for h in all_heights], [max(h) for h in all_heights]
+    return [min(h) - body.radius for h in all_heights], [max(h) + body.radius for h in all_heights]
 
 
 def box_gap(p: Bounds, q: Bounds) -> Fraction:
@@ -1108,6 +1121,8 @@ class File:
     bodies: list[Any]
     #: For each body its points in the body frame, and its facets.
     shapes: list[tuple[list[Vector], list[tuple[int, int, int]]]]
+    #: For each body its radius.
+    radii: list[Fraction]
     asked: str
     query: Any
     placement: Any
@@ -1116,13 +1131,14 @@ class File:
     def read(cls, content: dict[str, Any]) -> File:
         bodies = listed(content["bodies"])
         shapes = [Body.shape(shape) for shape in bodies]
+        radii = [Body.radius_of(shape) for shape in bodies]
         asked, query = "pair", None
         if content["query"] != "pair":
             asked, query = one_of(
                 content["query"], *(kind for kind in PLACEMENTS if kind != "pair")
             )
         _, placement = one_of(content["placement"], PLACEMENTS[asked])
-        return cls(bodies, shapes, asked, query, placement)
+        return cls(bodies, shapes, radii, asked, query, placement)
 
     def number(self, value: Any) -> int:
         """Returns the index of a body."""
@@ -1132,7 +1148,7 @@ class File:
         """Returns a body at its pose."""
         which = self.number(of["body"])
         body = Body.placed(*self.shapes[which], of["pose"])
-        return replace(body, radius=Body.radius_of(self.bodies[which]))
+        return replace(body, radius=self.radii[which])
 
     def poses(self) -> list[Body]:
         """Returns the bodies at their poses, the moving one first."""
@@ -1385,9 +1401,10 @@ class Scene:
 
     def slides(self, body: Body, d: Vector, normal: Vector) -> None:
         """Checks that the shadows overlap by at most the graze tolerance, up to rounding."""
-        noise = _NOISE * (size(self.moving, body) + self.min_gap)
+        core_gap = self.min_gap + radii(self.moving, body)
+        noise = _NOISE * (size(self.moving, body) + core_gap)
         most = max(self.graze, 8 * noise) + 3 * noise
-        if not are_shadows_apart(self.moving, body, d, normal, self.min_gap - most):
+        if not are_shadows_apart(self.moving, body, d, normal, core_gap - most):
             raise RefusedError("the shadows overlap by more than the graze tolerance")
 
 
@@ -2141,6 +2158,8 @@ class Span:
     end: Fraction
     #: The minimum gap; a negative value is a tolerated depth.
     min_gap: Fraction
+    #: The sum of the radii of both bodies.
+    swept: Fraction = Fraction()
 
     def gap(self, n: Vector, time: Fraction) -> Fraction:
         """Returns a lower bound of ``min_Q n.q - max_P n.p``."""
@@ -2150,8 +2169,8 @@ class Span:
         return between + lowest - highest - p.off(n) - q.off(n)
 
     def has(self, plane: Plane) -> bool:
-        """Checks whether a plane leaves its claimed gap beyond the minimum gap."""
-        return plane.is_left(self.gap(plane.normal, plane.time), self.min_gap)
+        """Checks whether a plane leaves its claimed gap beyond the minimum gap and the radii."""
+        return plane.is_left(self.gap(plane.normal, plane.time), self.min_gap + self.swept)
 
     def joins(self, a: Plane, b: Plane) -> bool:
         """Checks whether two planes prove all times between them.
@@ -2160,9 +2179,9 @@ class Span:
         second derivative by ``x`` is ``-W . E y``. It exceeds its chord by at most ``C x (1 - x) /
         2``, and so does the maximum over all points. Together with the fixed body, with the
         opposite sign, and with ``n`` times the motion between the axes, the gap is at least ``(1 -
-        x) a + x b - C x (1 - x) / 2``. The minimum gap times the length of ``n`` is below its
-        chord. For a tolerated depth this product exceeds its chord by at most the depth times
-        ``|dn|^2 x (1 - x)``.
+        x) a + x b - C x (1 - x) / 2``. Let ``G`` be the minimum gap plus the radii. ``G`` times the
+        length of ``n`` is below its chord. If ``G`` is negative, because a depth is tolerated, this
+        product exceeds its chord by at most ``-G |dn|^2 x (1 - x)``.
         """
         if a.time == b.time:
             return True
@@ -2173,8 +2192,9 @@ class Span:
         dn = minus(b.normal, a.normal)
         drift = minus(self.fixed.way, self.moving.way)
         c = 2 * dot(dn, drift) * (b.time - a.time)
-        if self.min_gap < 0:
-            c -= 2 * self.min_gap * dot(dn, dn) * (1 + Fraction(1, 2**40))
+        core_gap = self.min_gap + self.swept
+        if core_gap < 0:
+            c -= 2 * core_gap * dot(dn, dn) * (1 + Fraction(1, 2**40))
         return any(
             stays(
                 a.along,
@@ -2232,22 +2252,18 @@ class Span:
     def meets(self, met: Any, time: Fraction) -> None:
         """Checks that the bodies overlap by more than tolerated, or are within the minimum gap."""
         off = sum((spin.off(_ONES) for spin in (self.moving, self.fixed)), Fraction())
-        kind, claim = one_of(met, "deep", "near")
+        offs, kind, claim = (off, self.rounded()), *one_of(met, "deep", "near")
+
+        def ends(pairs: Any) -> list[tuple[Vector, Vector]]:
+            return self.ends(pairs, time)
+
+        def least(n: Vector) -> Fraction:
+            return self.gap(n, time) - off
+
         if kind == "deep":
-            surface = deep_claim(claim)["enclosure"]
-            corners = [minus(q, p) for p, q in self.ends(surface["pairs"], time)]
-
-            def least(n: Vector) -> Fraction:
-                return self.gap(n, time) - off
-
-            is_deep(claim, corners, least, (off, self.rounded()), max(-self.min_gap, Fraction()))
+            is_deep(claim, ends, least, offs, max(-self.min_gap, Fraction()), self.swept)
         elif kind == "near" and self.min_gap > 0:
-            is_near(
-                claim,
-                self.ends(near_claim(claim)["pairs"], time),
-                (off, self.rounded()),
-                self.min_gap,
-            )
+            is_near(claim, ends, offs, self.min_gap, self.swept)
         else:
             raise RefusedError(f"{kind!r} does not prove that the bodies meet")
 
@@ -2279,46 +2295,60 @@ def check_steps(steps: Any) -> None:
 
 def deep_claim(claim: Any) -> Any:
     """Returns a claim that bodies overlap, after a check of its fields."""
-    fields(claim, "lower upper direction enclosure", "steps")
+    fields(claim, "lower upper direction enclosure", "near steps")
     if "steps" in claim:
         check_steps(claim["steps"])
     fields(claim["enclosure"], "pairs triangles normals")
+    if claim.get("near") is not None:
+        near_claim(claim["near"])
     return claim
 
 
 def near_claim(claim: Any) -> Any:
     """Returns a claim that two points are near each other, after a check of its fields."""
-    for weight in listed(fields(claim, "pairs weights distance")["weights"], 4):
+    for weight in listed(fields(claim, _NEAR)["weights"], 4):
         number(weight)
     return claim
 
 
+#: Returns the points of pairs of vertices, from the moving and from the fixed body.
+Ends: TypeAlias = Callable[[Any], list[tuple[Vector, Vector]]]
+
+
 def is_deep(
     claim: Any,
-    corners: list[Vector],
+    ends: Ends,
     gap: Callable[[Vector], Fraction],
     off: tuple[Fraction, Fraction],
     tolerated: Fraction,
+    swept: Fraction,
 ) -> None:
     """Checks that bodies overlap by more than the tolerated depth; the depth holds up to rounding.
 
-    ``gap`` returns the least gap along a normal. ``off`` has the errors of corners here, and in the
-    poses to which the depth refers.
+    ``gap`` returns the least gap of the hulls of points along a normal. ``off`` has the errors of
+    points here, and in the poses to which the depth refers. ``swept`` is the sum of the radii.
     """
+    surface, near = deep_claim(claim)["enclosure"], claim.get("near")
     lower, upper, d = number(claim["lower"]), number(claim["upper"]), vector(claim["direction"])
     unit(d, "the direction of the depth")
-    for normal in listed(claim["enclosure"]["normals"]):
+    for normal in listed(surface["normals"]):
         unit(vector(normal))
     if not tolerated < lower <= upper:
         raise RefusedError(
             "the bounds of the depth are in the wrong order, or the depth is tolerated"
         )
-    # A surface still winds around the origin if its points move by less than their distance from
-    # it.
-    more = off[0] + tolerated * (1 + _TINY)
-    enclosure(corners, claim["enclosure"], max(more, lower - off[1]))
+    # Hulls at the distance `x` have the depth `swept - x`, hulls of the depth `x` have `swept + x`.
+    deeper = max(off[0] + tolerated * (1 + _TINY), lower - off[1]) - swept
+    if near is not None and not any(listed(part) for part in surface.values()):
+        if not swept or not are_cores_near(near, ends(listed(near["pairs"], 4)), -deeper):
+            raise RefusedError(f"the points do not prove a depth of {float(lower)!r}")
+    else:
+        # A surface still winds around the origin if its points move by less than their distance
+        # from it.
+        corners = [minus(q, p) for p, q in ends(surface["pairs"])]
+        enclosure(corners, surface, max(off[0], deeper))
     # The translation along the direction must separate the bodies up to rounding.
-    reach = -gap((-d[0], -d[1], -d[2]))
+    reach = swept - gap((-d[0], -d[1], -d[2]))
     if reach > upper + off[1]:
         raise RefusedError(
             f"a translation by {float(reach)!r} separates the bodies, not {float(upper)!r}"
@@ -2327,25 +2357,21 @@ def is_deep(
 
 def is_near(
     claim: Any,
-    ends: list[tuple[Vector, Vector]],
+    ends: Ends,
     off: tuple[Fraction, Fraction],
     min_gap: Fraction,
+    swept: Fraction,
 ) -> None:
-    """Checks that points of both bodies are within a gap; the distance holds up to rounding."""
-    told = number(claim["distance"])
-    if len(ends) != 4:
-        raise NoProofError("the claim does not have four pairs")
+    """Checks that points of both bodies are within a gap; the distance holds up to rounding.
+
+    ``off`` and ``swept`` are those of :func:`is_deep`.
+    """
+    pairs, told = listed(near_claim(claim)["pairs"], 4), number(claim["distance"])
     if not 0 <= told <= min_gap:
         raise RefusedError(f"{float(told)!r} is not as near as {float(min_gap)!r}")
-    if told == 0 and min_gap >= off[0] and encloses([minus(q, p) for p, q in ends]):
-        return
-    p, q = (mean([end[k] for end in ends], claim["weights"]) for k in (0, 1))
-    between = minus(q, p)
-    square = dot(between, between)
-    if not above(min_gap - off[0], square):
-        raise RefusedError(f"the points are not as near as {float(min_gap)!r}")
-    if not above(told + off[1], square):
-        raise RefusedError(f"the points are not as near as {float(told)!r}")
+    for length in (min_gap - off[0], told + off[1]):
+        if not are_cores_near(claim, ends(pairs), length + swept):
+            raise RefusedError(f"the points are not as near as {float(length)!r}")
 
 
 def stays(a: Fraction, b: Fraction, c: Fraction) -> bool:
@@ -2384,7 +2410,12 @@ def follows(last: Spin, later: Spin) -> bool:
     )
 
 
-def spans(movers: list[Any], points: Sequence[list[Vector]], min_gap: Fraction) -> list[Span]:
+def spans(
+    movers: list[Any],
+    points: Sequence[list[Vector]],
+    min_gap: Fraction,
+    swept: Fraction = _NO_GAP,
+) -> list[Span]:
     """Returns the periods in which both bodies spin evenly, in order."""
     sides = []
     for of, own in zip(movers, points, strict=True):
@@ -2399,7 +2430,7 @@ def spans(movers: list[Any], points: Sequence[list[Vector]], min_gap: Fraction) 
     found = []
     for begin, end in pairwise(borders):
         p, q = (max((s for s in side if s.since <= begin), key=lambda s: s.since) for side in sides)
-        found.append(Span(p, q, begin, end, min_gap))
+        found.append(Span(p, q, begin, end, min_gap, swept))
     return found
 
 
@@ -2409,7 +2440,8 @@ def motion(file: File, movers: list[Any], asked: Any, proof: Any, report: Report
     if any(facets for _, facets in shapes) or asked["tolerance"] is not None:
         raise NoProofError("this claim needs convex bodies without a tolerance")
     min_gap = asked["min_gap"]
-    all_spans = spans(movers, [points for points, _ in shapes], min_gap)
+    swept = sum((file.radii[of["body"]] for of in movers), Fraction())
+    all_spans = spans(movers, [points for points, _ in shapes], min_gap, swept)
     fields(proof, "spans meeting")
     claimed = listed(proof["spans"])
     if len(claimed) > len(all_spans):
@@ -3224,6 +3256,11 @@ class Couple:
     #: Upper bound of the distance of the input of both bodies beyond their vertices.
     left_out: Fraction
 
+    @property
+    def swept(self) -> Fraction:
+        """Returns the sum of the radii of both bodies."""
+        return radii(self.moving.body, self.fixed.body)
+
     def off(self) -> Fraction:
         """Returns a bound of the error of heights from sines, roots and rotations."""
         return (self.moving.size + self.fixed.size) * 64 * _SURE
@@ -3240,9 +3277,8 @@ class Couple:
 
     def has(self, plane: Plane, row: int) -> bool:
         unit(plane.normal)
-        return plane.gap > 0 and plane.is_left(
-            self.gap(plane.normal, row, plane.time), self.min_gap
-        )
+        along = self.gap(plane.normal, row, plane.time)
+        return plane.gap > 0 and plane.is_left(along, self.min_gap + self.swept)
 
     def joins(self, row: int, a: Plane, b: Plane) -> bool:
         """Checks whether two planes of a row prove everything between them.
@@ -3483,12 +3519,17 @@ def do_meet(couple: Couple, met: Any, row: int, share: Fraction) -> None:
     """Checks that two convex pieces overlap at a place, or are within the minimum gap."""
     kind, claim = one_of(met, "deep", "near")
     min_gap, off = couple.min_gap, (couple.off(), couple.rounded())
+
+    def ends(pairs: Any) -> list[tuple[Vector, Vector]]:
+        return couple.ends(pairs, row, share)
+
+    def least(n: Vector) -> Fraction:
+        return couple.gap(n, row, share)
+
     if kind == "deep":
-        pairs = deep_claim(claim)["enclosure"]["pairs"]
-        corners = [minus(q, p) for p, q in couple.ends(pairs, row, share)]
-        is_deep(claim, corners, lambda n: couple.gap(n, row, share), off, Fraction())
+        is_deep(claim, ends, least, off, Fraction(), couple.swept)
     elif kind == "near" and min_gap > 0:
-        is_near(claim, couple.ends(near_claim(claim)["pairs"], row, share), off, min_gap)
+        is_near(claim, ends, off, min_gap, couple.swept)
     else:
         raise RefusedError(f"{kind!r} does not prove that the bodies meet")
 
@@ -3711,9 +3752,6 @@ def check(text: str) -> Report:
             raise NoProofError(f"the version is {content.get('version')!r}, not {VERSION}")
         fields(content, "format version bodies placement query statement")
         file, report = File.read(content), Report()
-        if file.asked not in ("cast", "pair") and any(map(Body.radius_of, file.bodies)):
-            report.unchecked.append(f"the {file.asked}, whose bodies are rounded")
-            return report
         for k, body in enumerate(file.bodies):
             check_faces(report, k, body.get("convex"))
         kind, claim = one_of(content["statement"], *CLAIMS)

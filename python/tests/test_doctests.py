@@ -13,7 +13,15 @@ import colltrans
 TUTORIALS = ROOT / "python" / "docs" / "tutorials"
 GUIDES = [
     ROOT / "docs" / "guide" / f"{name}.md"
-    for name in ("python", "python-arrays", "distance", "rounded", "motions", "robots")
+    for name in (
+        "python",
+        "python-arrays",
+        "distance",
+        "rounded",
+        "point-clouds",
+        "motions",
+        "robots",
+    )
 ]
 PAGES = [*GUIDES, *sorted(TUTORIALS.glob("*.md"))]
 

@@ -67,9 +67,9 @@ def test_every_page_is_in_the_table_of_contents() -> None:
     assert [page for page in sorted(pages) if f"\n{page}\n" not in index] == []
 
 
-def test_the_gallery_has_twelve_programs_and_the_site_three_notebooks() -> None:
+def test_the_gallery_has_thirteen_programs_and_the_site_three_notebooks() -> None:
     programs = sorted((SITE / "gallery").iterdir())
-    assert len(programs) == 12
+    assert len(programs) == 13
     for program in programs:
         title, words = program.read_text().splitlines()[:2]
         assert title.startswith("# ") and words.startswith("# "), program

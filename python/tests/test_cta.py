@@ -1,4 +1,4 @@
-"""Tests the paper's algorithm as an option, with its start and its end."""
+"""Tests the paper's algorithm as an option, with its start, its end and its steps."""
 
 import pickle
 from typing import Any
@@ -26,11 +26,17 @@ def test_planar_problems_are_solved_to_the_exit() -> None:
     rough = contact(solver=Cta(start="ellipsoids")).steps
     assert whole.planar_problems > part.planar_problems > rough.planar_problems == 0
     assert 3 <= whole.region_sides <= 8 and rough.region_sides == 0
+    near = contact(solver=Cta(start="guess", across_cells=True)).steps
+    assert 1 <= near.planar_problems < whole.planar_problems
+    cold = contact(solver=Cta(cold=True)).steps
+    assert cold.iterations > whole.iterations
+    early = contact(solver=Cta(cuts="centroid")).steps
+    assert early.planar_problems >= whole.planar_problems
 
 
 def test_many_rows_take_the_options_of_one() -> None:
     directions = RANDOM.normal(size=(20, 3)) * 0.1 + DOWN
-    solvers: list[Any] = [Cta(), Cta(until=0.1), "portal"]
+    solvers: list[Any] = [Cta(), Cta(until=0.1), Cta(start="guess", across_cells=True), "portal"]
     for solver in solvers:
         rows = cast_many(BALL, BALL, directions, moving_pose=ABOVE, solver=solver)
         ones = [contact(d, solver) for d in directions]
@@ -57,6 +63,11 @@ def test_options_are_values_and_invalid_ones_are_refused() -> None:
     assert repr(nearly) == "Cta(start='ellipsoids', until=0.25)"
     assert repr(Cta()) == "Cta(start='center', until='exit')"
     assert pickle.loads(pickle.dumps(nearly)) == nearly != Cta()
+    fast = Cta(start="guess", cuts="centroid", across_cells=True, cold=True)
+    assert repr(fast) == "Cta(start='guess', until='exit', cuts='centroid', across_cells=True, cold=True)"
+    assert pickle.loads(pickle.dumps(fast)) == fast != Cta(start="guess")
+    with pytest.raises(QueryError, match='there is no cut "corner"'):
+        Cta(cuts="corner")  # type: ignore[arg-type]
     with pytest.raises(QueryError, match='there is no start "rim"'):
         Cta(start="rim")  # type: ignore[arg-type]
     for until in ("end", -1.0, float("nan")):

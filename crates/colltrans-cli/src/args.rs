@@ -36,7 +36,7 @@ pub(crate) use motion::MotionArguments;
 pub(crate) use path::PathArguments;
 pub(crate) use placed::{PlacedArguments, WithinArguments};
 pub(crate) use values::{Angles, Place, direction, normalised_pose_note, normalised_poses_note};
-use values::{angles, bytes, factor, length, picture, place, proof, solver, start, threads};
+use values::{angles, bytes, cuts, factor, length, picture, place, proof, solver, start, threads};
 
 /// How far can one body move before it touches another?
 ///
@@ -180,6 +180,15 @@ pub(crate) struct NarrowingArguments {
     /// the bodies' extent [default: exit]
     #[arg(long, value_name = "exit|SHARE", hide_short_help = true)]
     until: Option<cta::Until>,
+    /// With --solver cta: the value of `phi` at which the region of levels is cut [default: shifted]
+    #[arg(long, value_name = "WHERE", value_parser = cuts(), hide_short_help = true)]
+    cuts: Option<cta::Cuts>,
+    /// With --solver cta: shifts continue into neighbouring cells, which takes fewer planar problems
+    #[arg(long, hide_short_help = true)]
+    across_cells: bool,
+    /// With --solver cta: each planar problem is searched without a hint, as in the paper
+    #[arg(long, hide_short_help = true)]
+    cold: bool,
 }
 
 /// Options of queries along a direction, and their outputs.
@@ -434,25 +443,39 @@ impl BodyArguments {
     }
 }
 
+impl NarrowingArguments {
+    /// Checks whether an option is given.
+    fn is_given(&self) -> bool {
+        self.start.is_some()
+            || self.until.is_some()
+            || self.cuts.is_some()
+            || self.across_cells
+            || self.cold
+    }
+}
+
 impl PairArguments {
     /// Returns the options of the solver `cta`.
     ///
     /// # Errors
-    /// `--start` or `--until` is given, and the solver is not `cta`.
+    /// One of them is given, and the solver is not `cta`.
     pub(crate) fn narrowing(&self) -> Result<cta::Options, Failure> {
-        let NarrowingArguments { start, until } = self.narrowing;
-        if self.solver != Solver::Cta && (start.is_some() || until.is_some()) {
-            return Err(Failure::new(Code::Usage, "--start and --until require --solver cta"));
+        if self.solver != Solver::Cta && self.narrowing.is_given() {
+            let flags = "--start, --until, --cuts, --across-cells and --cold";
+            return Err(Failure::new(Code::Usage, format!("{flags} require --solver cta")));
         }
-        Ok(cta::Options::new(start.unwrap_or_default(), until.unwrap_or_default()))
+        let NarrowingArguments { start, until, cuts, across_cells, cold } = self.narrowing;
+        Ok(cta::Options::new(start.unwrap_or_default(), until.unwrap_or_default())
+            .with_cuts(cuts.unwrap_or_default())
+            .with_keeps_to_cell(!across_cells)
+            .with_starts_cold(cold))
     }
 
     /// Checks whether an option requires convex bodies.
     fn requires_convex(&self) -> bool {
         self.hulls.requires_convex(self.body)
             || self.solver != Solver::Auto
-            || self.narrowing.start.is_some()
-            || self.narrowing.until.is_some()
+            || self.narrowing.is_given()
             || self.graze_tolerance != 0.0
     }
 

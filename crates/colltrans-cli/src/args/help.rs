@@ -432,7 +432,9 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
    "length": L (of "within"), "min_gap": GAP (the minimum gap),
    "moving_motion": MOTION, "fixed_motion": MOTION (of motions),
    "graze_tolerance": L, "solver": "auto"|"cta"|"portal" (of convex bodies),
-   "start": "center"|"ellipsoids", "until": "exit"|SHARE (of "cta"),
+   "start": "center"|"ellipsoids"|"guess", "until": "exit"|SHARE,
+   "cuts": "shifted"|"centroid", "across_cells": true|false,
+   "cold": true|false (all five of "cta"),
    "tolerance": L (of solids and motions),
    "ignore_start_overlaps": true|false (of solids)}
   BODY = {"points": [[x,y,z],...], "radius": R} (their convex hull, rounded by R)

@@ -74,8 +74,25 @@ pub(crate) fn start() -> impl TypedValueParser<Value = cta::Start> {
             cta::Start::Ellipsoids,
             "Where ellipsoids of inertia would meet: often no section is needed",
         ),
+        named(
+            cta::Start::Guess,
+            "In a neighbourhood of a guessed solution, from a few support points",
+        ),
     ])
     .try_map(|name| name.parse::<cta::Start>())
+}
+
+/// Parses the value of `phi` at which the region of levels is cut.
+pub(crate) fn cuts() -> impl TypedValueParser<Value = cta::Cuts> {
+    let named = |cuts: cta::Cuts, what| PossibleValue::new(cuts.name()).help(what);
+    PossibleValuesParser::new([
+        named(cta::Cuts::Shifted, "At the least value found, as in the paper"),
+        named(
+            cta::Cuts::Centroid,
+            "At the value of the planar problem, as in the method before it",
+        ),
+    ])
+    .try_map(|name| name.parse::<cta::Cuts>())
 }
 
 /// A pose of the command line: an optional rotation, then a translation.

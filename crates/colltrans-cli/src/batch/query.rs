@@ -330,6 +330,9 @@ impl<B> Query<'_, B> {
             "solver" => self.solver.is_some(),
             "start" => self.start.is_some(),
             "until" => self.until.is_some(),
+            "cuts" => self.cuts.is_some(),
+            "across_cells" => self.across_cells.is_some(),
+            "cold" => self.cold.is_some(),
             "min_gap" => self.min_gap.is_some(),
             "tolerance" => self.tolerance.is_some(),
             "ignore_start_overlaps" => self.ignore_start_overlaps.is_some(),
@@ -351,12 +354,15 @@ impl<B> Query<'_, B> {
     /// Returns the options of the solver `cta`.
     ///
     /// # Errors
-    /// The query has `start` or `until`, and its solver is not `cta`.
+    /// The query has one of them, and its solver is not `cta`.
     fn narrowing(&self) -> Result<cta::Options, String> {
-        if self.solver != Some(Solver::Cta) && (self.start.is_some() || self.until.is_some()) {
-            return Err(r#"`start` and `until` require "solver": "cta""#.into());
+        if self.solver != Some(Solver::Cta) && self.reject_fields(&NARROWING_FIELDS).is_err() {
+            return Err(format!(r#"{NARROWING_NAMES} require "solver": "cta""#));
         }
-        Ok(cta::Options::new(self.start.unwrap_or_default(), self.until.unwrap_or_default()))
+        Ok(cta::Options::new(self.start.unwrap_or_default(), self.until.unwrap_or_default())
+            .with_cuts(self.cuts.unwrap_or_default())
+            .with_keeps_to_cell(!self.across_cells.unwrap_or_default())
+            .with_starts_cold(self.cold.unwrap_or_default()))
     }
 
     /// Answers a cast of convex bodies.
@@ -403,8 +409,8 @@ impl<B> Query<'_, B> {
                 "`graze_tolerance` requires convex bodies; solids accept `tolerance`".into()
             );
         }
-        if self.solver.is_some() || self.start.is_some() || self.until.is_some() {
-            return Err("`solver`, `start` and `until` require convex bodies".into());
+        if self.solver.is_some() || self.reject_fields(&NARROWING_FIELDS).is_err() {
+            return Err(format!("`solver`, {NARROWING_NAMES} require convex bodies"));
         }
         let [moving, fixed] = as_solids(shapes)?;
         let query = PartsQuery {
@@ -431,8 +437,22 @@ enum Task {
 }
 
 /// Fields of queries with a direction. Motions have the last one, too.
-const CAST_FIELDS: [&str; 6] =
-    ["direction", "graze_tolerance", "solver", "start", "until", "ignore_start_overlaps"];
+const CAST_FIELDS: [&str; 9] = [
+    "direction",
+    "graze_tolerance",
+    "solver",
+    "start",
+    "until",
+    "cuts",
+    "across_cells",
+    "cold",
+    "ignore_start_overlaps",
+];
+
+/// Fields of the solver `cta`.
+const NARROWING_FIELDS: [&str; 5] = ["start", "until", "cuts", "across_cells", "cold"];
+/// Their names in errors.
+const NARROWING_NAMES: &str = "`start`, `until`, `cuts`, `across_cells` and `cold`";
 
 /// Answers a question about placed bodies.
 fn pair_line(

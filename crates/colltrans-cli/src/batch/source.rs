@@ -31,6 +31,9 @@ pub(super) struct Query<'a, Body> {
     /// For [`Solver::Cta`].
     pub(super) start: Option<cta::Start>,
     pub(super) until: Option<cta::Until>,
+    pub(super) cuts: Option<cta::Cuts>,
+    pub(super) across_cells: Option<bool>,
+    pub(super) cold: Option<bool>,
     pub(super) tolerance: Option<f64>,
     pub(super) ignore_start_overlaps: Option<bool>,
     pub(super) min_gap: Option<f64>,

@@ -30,13 +30,21 @@ fn start_and_until_control_the_papers_algorithm() {
     assert!(problems(&["--solver", "cta"]) >= 1);
     assert!(problems(&["--solver", "cta", "--start", "center", "--until", "0.5"]) >= 1);
     assert_eq!(problems(&["--solver", "cta", "--start", "ellipsoids"]), 0);
-    assert_error(&asked(&["--until", "exit"]), 2, &["--start and --until require --solver cta"]);
+    assert!(problems(&["--solver", "cta", "--start", "guess", "--across-cells"]) >= 1);
+    assert!(problems(&["--solver", "cta", "--cold", "--cuts", "centroid"]) >= 1);
+    for flags in
+        [&["--until", "exit"][..], &["--cuts", "shifted"], &["--cold"], &["--across-cells"]]
+    {
+        assert_error(&asked(flags), 2, &["--across-cells and --cold require --solver cta"]);
+    }
     let wrong = asked(&["--solver", "cta", "--until", "soon"]);
     assert_error(&wrong, 2, &["accepted: `exit`, or a number"]);
     let lines = r#"{"id":1,"moving":M,"fixed":M,"moving_pose":{"translation":[0.2,0.1,5]},"direction":[0,0,-1],"solver":"cta"}
 {"id":2,"moving":M,"fixed":M,"moving_pose":{"translation":[0.2,0.1,5]},"direction":[0,0,-1],"solver":"cta","start":"ellipsoids","until":0.2}
 {"id":3,"moving":M,"fixed":M,"direction":[0,0,-1],"until":0.2}
 {"id":4,"moving":M,"fixed":M,"direction":[0,0,-1],"solver":"cta","until":-1}
+{"id":5,"moving":M,"fixed":M,"direction":[0,0,-1],"cold":true}
+{"id":6,"moving":M,"fixed":M,"moving_pose":{"translation":[0.2,0.1,5]},"direction":[0,0,-1],"solver":"cta","start":"guess","cuts":"centroid","across_cells":true,"cold":true}
 "#;
     let tetrahedron = r#"{"points":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}"#;
     std::fs::write(folder.path().join("cta.jsonl"), lines.replace('M', tetrahedron)).unwrap();
@@ -44,7 +52,13 @@ fn start_and_until_control_the_papers_algorithm() {
     let results: Vec<_> = stdout(&output).lines().map(json).collect();
     let problems = |k: usize| results[k]["steps"]["planar_problems"].as_u64();
     assert!(problems(0).unwrap() >= 1 && problems(1) == Some(0), "{results:?}");
-    for (k, words) in [(2, "`start` and `until` require"), (3, "gap -1 at which narrowing ends")] {
+    assert!(problems(5).unwrap() >= 1, "{results:?}");
+    let refused = [
+        (2, "`cuts`, `across_cells` and `cold` require \"solver\": \"cta\""),
+        (3, "gap -1 at which narrowing ends"),
+        (4, "`cold` require"),
+    ];
+    for (k, words) in refused {
         assert!(results[k]["message"].as_str().unwrap().contains(words), "{}", results[k]);
     }
 }

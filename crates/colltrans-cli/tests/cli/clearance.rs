@@ -448,7 +448,7 @@ fn batch_answers_solids_or_rejects_their_fields() {
         "require solids",
         "not closed",
         "`hull` requires a `mesh`",
-        "`solver`, `start` and `until` require convex bodies",
+        "`solver`, `start`, `until`, `cuts`, `across_cells` and `cold` require convex bodies",
     ]) {
         assert_eq!(result["outcome"], "error");
         assert!(result["message"].as_str().unwrap().contains(word), "{result}");

@@ -17,6 +17,7 @@ pub mod observe;
 pub mod options;
 pub(crate) mod portal;
 mod proof;
+mod solution_guess;
 mod warm_start;
 mod warm_start_policy;
 
@@ -363,6 +364,11 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
         match self.narrowing.start {
             cta::options::Start::Center => self.start_by_cta(MinimisationStart::Center),
             cta::options::Start::Ellipsoids => self.start_from_ellipsoids(),
+            cta::options::Start::Guess => {
+                let guess = solution_guess::guessed_solution(&mut self.context);
+                let start = guess.map_or(MinimisationStart::Center, MinimisationStart::Region);
+                self.start_by_cta(start)
+            }
         }
     }
 
@@ -397,7 +403,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
         if let Some(portal) =
             corners.and_then(|c| portal::pierced_triangle(&self.context.difference, c))
         {
-            return NarrowedStart::Enclosed(Enclosure::Portal(portal, PortalStatus::EnclosesLine));
+            return NarrowedStart::Enclosed(Enclosure::Portal(portal, PortalStatus::ReachedByWalk));
         }
         let [moving, fixed] = narrowed.vertices;
         let near = VertexPair::from_indices(moving[0], fixed[0]);
@@ -435,7 +441,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
             }
         };
         let worth = region != Region::Automatic || self.context.difference.is_near(half_side);
-        worth.then_some(LastSolution { touching, half_side, pair, normal: normals[0] })
+        worth.then_some(LastSolution { touching, half_side, pair: Some(pair), normal: normals[0] })
     }
 
     /// Refines the portal, and returns a contact, or grazing if the overlap is within the tolerance. If the

@@ -84,6 +84,66 @@ fn every_contact_is_found_by_planar_problems_and_proven_by_one_portal() {
 }
 
 #[test]
+fn guessed_solution_saves_planar_problems_but_no_proof() {
+    for n in [200, 3_200] {
+        for (name, body) in kinds(n) {
+            let mut random = Random::new(12);
+            // Planar problems and pivots from the centre, in N(p), and in N(p) with shifts across cells.
+            let [mut problems, mut pivots] = [[0; 3]; 2];
+            let mut contacts = 0;
+            for _ in 0..SETTINGS {
+                let cast = cast(&body, &mut random);
+                let Some(known) = contact(cast.first_contact().expect("an answer")) else {
+                    continue;
+                };
+                contacts += 1;
+                let guess = cta::Options::new(cta::Start::Guess, cta::Until::Exit);
+                let starts = [cta::Options::default(), guess, guess.with_keeps_to_cell(false)];
+                for (k, start) in starts.into_iter().enumerate() {
+                    let found = with(&cast, start).first_contact().expect("an answer");
+                    let found = contact(found).expect("it meets");
+                    let steps = found.steps;
+                    // Portal refinement must not answer instead of planar problems.
+                    assert!(steps.planar_problems > 0 && steps.iterations > 0, "{name}: {steps:?}");
+                    assert_eq!(steps.started_from, StartedFrom::Scratch);
+                    problems[k] += steps.planar_problems;
+                    pivots[k] += steps.pivots;
+                    let [a, b] = [found.certificate, known.certificate];
+                    assert!(a.lower <= b.upper && b.lower <= a.upper, "{name}: {a:?} {b:?}");
+                }
+            }
+            let mean = |sum: u32| f64::from(sum) / f64::from(contacts);
+            let [center, guess, across] = problems.map(mean);
+            assert!(contacts > 80, "{name} {n}: {contacts}");
+            assert!(guess < 0.75 * center, "{name} {n}: {guess} of {center}");
+            assert!(across < guess && across < 0.6 * center, "{name} {n}: {across} of {center}");
+            for pivots in pivots.map(mean) {
+                assert!(pivots < 3.0, "{name} {n}: {pivots} portals");
+            }
+        }
+    }
+}
+
+#[test]
+fn guess_of_passing_bodies_starts_at_the_centre() {
+    let (_, body) = kinds(800).swap_remove(1);
+    let mut random = Random::new(14);
+    for _ in 0..SETTINGS {
+        let aside = random.direction().cross(DVec3::X).normalize() * 2.5;
+        let start = Pose::new(random.rotation(), aside - DVec3::X * 3.0).expect("a pose");
+        let target = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
+        let cast = Cast::new(body.at(start), body.at(target), DVec3::X).expect("a query");
+        let of = |start| {
+            let outcome = with(&cast, cta::Options::new(start, cta::Until::Exit)).first_contact();
+            let outcome = outcome.expect("an answer");
+            assert!(matches!(outcome, Outcome::Separated(_)));
+            outcome.steps()
+        };
+        assert_eq!(of(cta::Start::Guess), of(cta::Start::Center));
+    }
+}
+
+#[test]
 fn a_tracker_begins_in_the_neighbourhood_of_the_last_solution() {
     let (_, body) = kinds(3_200).swap_remove(1);
     let mut random = Random::new(3);

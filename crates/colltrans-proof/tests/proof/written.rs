@@ -112,7 +112,8 @@ fn displayed_names_match_serde_and_parse() {
         StartedFrom::Region,
         StartedFrom::Scratch,
     ]);
-    assert_names_match(&[cta::Start::Ellipsoids, cta::Start::Center]);
+    assert_names_match(&[cta::Start::Ellipsoids, cta::Start::Center, cta::Start::Guess]);
+    assert_names_match(&[cta::Cuts::Shifted, cta::Cuts::Centroid]);
     for (until, text) in [(cta::Until::Exit, "exit"), (cta::Until::Gap(0.25), "0.25")] {
         assert_eq!((until.to_string().as_str(), text.parse()), (text, Ok(until)));
     }

@@ -35,7 +35,7 @@ pub(crate) struct Pair {
     graze: f64,
     #[serde(default)]
     solver: Solver,
-    /// For the solver `cta`: `start` is `center` or `ellipsoids`, `until` is `exit` or a gap.
+    /// For the solver `cta`: `start` is `center`, `ellipsoids` or `guess`, `until` is `exit` or a gap.
     #[serde(default)]
     start: cta::Start,
     #[serde(default)]

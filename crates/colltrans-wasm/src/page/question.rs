@@ -49,7 +49,7 @@ pub(crate) struct Pair {
     pub(crate) graze: f64,
     /// The solver, for convex bodies.
     pub(crate) solver: Solver,
-    /// For the solver `cta`: `start` is `center` or `ellipsoids`, `until` is `exit` or a gap.
+    /// For the solver `cta`: `start` is `center`, `ellipsoids` or `guess`, `until` is `exit` or a gap.
     pub(crate) narrowing: cta::Options,
     /// Tolerance of solids; the default follows from the precision of the files.
     pub(crate) tolerance: Option<f64>,

@@ -28,6 +28,18 @@ const NARROW_FACTOR: f64 = 8.0;
 /// Maximum number of cells that a shift crosses before the next planar problem (measured).
 const MAX_CELLS: u32 = 16;
 
+/// Maximum number of planar problems at predicted levels (measured).
+const MAX_PREDICTED: u32 = 8;
+/// Maximum distance of predicted levels from the centre of the neighbourhood, in half-sides (measured).
+const PREDICTED_REACH: f64 = 2.0;
+/// Share of the way from the optimum of the lower bound to the centre of the neighbourhood at which the next planar
+/// problem is solved (measured).
+const OPTIMUM_SHARE: f64 = 0.3;
+/// Distance of the next planar problem from separated levels, in multiples of that of the separating line (measured).
+const BEYOND_LINE: f64 = 1.5;
+/// Distance of predicted levels from the middle, at most, as a share of half their range: the section needs an area.
+const INNER_LEVELS: f64 = 0.998;
+
 /// Options of a minimisation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MinimisationOptions {
@@ -120,7 +132,14 @@ impl SectionPair<'_> {
         watch.phase_ended(Phase::Planar);
         let Some(first) = first else {
             watch.planar_problem(|| PlanarProblem::hidden(levels));
-            return NarrowedSearch::without_sections();
+            return match options.start {
+                MinimisationStart::Center => NarrowedSearch::without_sections(),
+                MinimisationStart::Region(_) => {
+                    let center =
+                        MinimisationOptions { start: MinimisationStart::Center, ..*options };
+                    self.minimise_phi(&center, watch)
+                }
+            };
         };
         let gap = options.gap * self.extent;
         let mut search = Minimisation {
@@ -140,6 +159,8 @@ impl SectionPair<'_> {
             last: (levels, first),
             watch,
             steps: 1,
+            predicted: 0,
+            ahead: None,
         };
         if search.apply_answer(initial.levels - self.origin, levels, &first) {
             search.solve_planar_problems(gap);
@@ -178,6 +199,11 @@ struct Minimisation<'q, 'a, 'o, O> {
     watch: &'q mut Watch<'o, O>,
     /// Number of planar problems solved.
     steps: u32,
+    /// Number of planar problems solved at predicted levels.
+    predicted: u32,
+    /// Levels predicted by the last answer: across the line that separates the sections, or where a shift could not
+    /// enter the next cell.
+    ahead: Option<DVec2>,
 }
 
 impl SectionPair<'_> {
@@ -217,6 +243,10 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             self.watch.phase_ended(Phase::Planar);
             let Some(answer) = answer else {
                 self.watch.planar_problem(|| PlanarProblem::hidden(levels));
+                // Elsewhere, the sections may be longer than rounding errors.
+                if self.neighbourhood.take().is_some() {
+                    continue;
+                }
                 break;
             };
             self.last = (levels, answer);
@@ -239,15 +269,40 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
     /// Returns the next levels to cut at (the paper, figure 10): the centroid `c` if it is in the
     /// neighbourhood; the point `c*` where the way from the neighbourhood's centre to `c` leaves it, if `c*` is
     /// in the region; else `c`, from then on without the neighbourhood. `None` if the region has no area.
+    ///
+    /// If shifts do not end in their cells, predicted levels near the neighbourhood come first.
     fn next_cut_point(&mut self) -> Option<DVec2> {
         let centroid = self.region.centroid()?;
         let Some(neighbourhood) = self.neighbourhood else { return Some(centroid) };
+        if !self.keeps_to_cell
+            && self.predicted < MAX_PREDICTED
+            && let Some(at) = self.predicted_levels(&neighbourhood)
+        {
+            self.predicted += 1;
+            return Some(at);
+        }
         let entry = neighbourhood.entry_point(centroid);
         if self.region.contains(entry) {
             return Some(entry);
         }
         self.neighbourhood = None;
         Some(centroid)
+    }
+
+    /// Returns levels near the neighbourhood at which the solution probably is: those that the last answer predicts,
+    /// else the optimum of the lower bound, moved towards the centre of the neighbourhood. `None` if they are too far
+    /// from it or no longer in the region.
+    fn predicted_levels(&mut self, neighbourhood: &Neighbourhood) -> Option<DVec2> {
+        let center = neighbourhood.center;
+        let at = match (self.ahead.take(), &self.bound) {
+            (Some(ahead), _) => ahead,
+            (None, Some(bound)) => bound.optimum.lerp(center, OPTIMUM_SHARE),
+            (None, None) => return None,
+        };
+        let most = self.sections.half * INNER_LEVELS;
+        let at = at.clamp(-most, most);
+        let is_near = (at - center).abs().max_element() <= PREDICTED_REACH * neighbourhood.half;
+        (is_near && self.region.contains(at)).then_some(at)
     }
 
     /// Shifts to the best point of the answer's cell, cuts the region and raises the bound. Returns `false` if
@@ -268,6 +323,10 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             Cuts::Shifted => self.upper,
             Cuts::Centroid => local.bound.value,
         };
+        if local.weight == 0.0 && self.upper.is_infinite() {
+            let Affine { value, gradient } = local.bound;
+            self.ahead = Some(at - gradient * (BEYOND_LINE * value / gradient.length_squared()));
+        }
         self.region.cut_by(bound.gradient, limit - bound.value);
         let sides = &mut self.watch.steps.region_sides;
         *sides = self.region.side_count().max(*sides);
@@ -313,7 +372,10 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             if !self.keeps_to_cell && self.is_remainder_narrow() { MAX_CELLS } else { 0 };
         for _ in 0..max_cells {
             let ExitResult::Falls(descent) = exit else { break };
-            let Some(next) = self.enter_next_cell(&descent) else { break };
+            let Some(next) = self.enter_next_cell(&descent) else {
+                self.ahead = Some(DVec2::from_array(descent.levels) - self.sections.origin);
+                break;
+            };
             exit = next;
         }
     }
@@ -340,6 +402,7 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         }
         let cell = answer.contact_cell(sides, descent.levels)?;
         let best = cell.best_point(local.bound.gradient);
+        self.last = (descent.levels, answer);
         Some(self.test_improvement((descent.levels, &answer), &local, (&cell, &best)))
     }
 

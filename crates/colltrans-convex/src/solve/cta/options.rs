@@ -76,6 +76,11 @@ pub enum Start {
     /// The contact of the bodies' inertia ellipsoids. Portal refinement starts there. Planar problems are
     /// solved only if the ellipsoids miss each other and the bodies may not.
     Ellipsoids,
+    /// The neighbourhood `N(p)` of a guessed solution `p` (the paper, line 2 of figure 7, without an earlier
+    /// query). `p` is the contact that the bodies' outlines predict, or a face and the vertex opposite it, or it comes
+    /// from a few support points. `delta` is the lateral distance of these points. Without a guess, because the
+    /// bodies seem to miss each other, the centre.
+    Guess,
 }
 
 /// Value of `phi` at which a minimisation cuts the region of levels.
@@ -182,9 +187,10 @@ impl TryFrom<UntilRecord> for Until {
     }
 }
 
+colltrans_kernel::serialization::named!("cut", Cuts { Shifted: "shifted", Centroid: "centroid" });
 colltrans_kernel::serialization::named!(
     "start",
-    Start { Center: "center", Ellipsoids: "ellipsoids" }
+    Start { Center: "center", Ellipsoids: "ellipsoids", Guess: "guess" }
 );
 
 /// Error for a text that is not a valid [`Until`].

@@ -14,11 +14,11 @@ use crate::setting::VertexPair;
 pub(crate) enum MinimisationStart {
     /// The middle of the levels.
     Center,
-    /// The solution of an earlier query.
+    /// The solution of an earlier query, or a guess of the solution.
     Region(LastSolution),
 }
 
-/// The solution of an earlier query.
+/// The solution of an earlier query, or a guess of the solution.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LastSolution {
     /// Points of contact, in the frames of P and of Q.
@@ -27,8 +27,8 @@ pub(crate) struct LastSolution {
     pub(crate) half_side: f64,
     /// Normal of the contact or of the separating plane, in the frame of P.
     pub(crate) normal: DVec3,
-    /// Vertices near the points of contact.
-    pub(crate) pair: VertexPair,
+    /// Vertices near the points of contact, if known.
+    pub(crate) pair: Option<VertexPair>,
 }
 
 /// Distance of the first levels from the ends of their range, as a share of the range: the section needs an
@@ -67,12 +67,13 @@ impl SectionPair<'_> {
     }
 
     /// Builds a hint from an earlier solution: the sections face each other along its normal, at the height of
-    /// its points of contact.
+    /// its points of contact. The hint is empty if no vertices near them are known.
     fn facing_hint(&self, focus: &LastSolution, levels: [f64; 2]) -> PlanarHint {
+        let Some(pair) = focus.pair else { return PlanarHint::NONE };
         let normal = self.setting.moving_matrix * focus.normal;
         let lateral = normal - self.frame.axes[0] * normal.dot(self.setting.unit);
         let right = usize::from(lateral.dot(self.frame.shadow[1]) > 0.0);
-        let vertices = focus.pair.indices();
+        let vertices = pair.indices();
         let [p, q] = [0, 1].map(|body| self.sides[body].point_height(focus.touching[body]));
         let edges = [0, 1].map(|body| self.sides[body].upward_edge_at(vertices[body]));
         PlanarHint { height: p.max(q), levels, last: LastAnswer::Facing { right, edges } }

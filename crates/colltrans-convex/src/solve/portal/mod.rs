@@ -36,9 +36,9 @@ pub(crate) use enclose::{
 pub(crate) use face_walk::{
     ContactPortal, ELLIPSOID_LIMITS, WalkResult, walk_from_guess, walk_from_last,
 };
-pub(crate) use normal_guess::NormalGuess;
+pub(crate) use normal_guess::{NormalGuess, support_derivatives};
 pub(crate) use opposed_faces::opposed_face_contact;
-pub(crate) use outline::walk_from_outlines;
+pub(crate) use outline::{outline_contact, walk_from_outlines};
 pub(crate) use overlap::{Overlap, overlap};
 pub(crate) use plane::{Face, Plane};
 pub(crate) use refine::{MAX_PORTALS, Refined, refine, supported_face};
@@ -56,7 +56,7 @@ impl<O: Observer> Context<'_, '_, O> {
     /// Returns the support point along `normal`. Starts the search at `near`, if a nearby pair is known.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction in memory stalls the scan")]
-    fn support(&mut self, normal: DVec3, near: Option<VertexPair>) -> ShadowPoint {
+    pub(crate) fn support(&mut self, normal: DVec3, near: Option<VertexPair>) -> ShadowPoint {
         let point = match near {
             Some(near) => self.difference.support_point_from(normal, near),
             None => self.difference.support_point(normal),
@@ -71,7 +71,7 @@ impl<O: Observer> Context<'_, '_, O> {
 pub(crate) enum PortalStatus {
     /// The portal encloses the line.
     EnclosesLine,
-    /// The portal was reached by a face walk, or lies in a cap; it is probably in the lowest face.
+    /// The portal was reached by a face walk or an exit test, or lies in a cap; it is probably in the lowest face.
     ReachedByWalk,
     /// This face is proven to be the lowest on the line.
     Lowest(Face),

@@ -241,7 +241,7 @@ pub(super) fn predicted_slope(
 /// Returns the gradient and the Hessian of an ellipsoid's support function with respect to the lateral
 /// components of a normal.
 #[inline]
-fn support_derivatives(k: &Symmetric, normal: DVec3) -> (DVec2, DMat2) {
+pub(crate) fn support_derivatives(k: &Symmetric, normal: DVec3) -> (DVec2, DMat2) {
     let kn = k.times_vector(normal);
     let inverse_length = 1.0 / normal.dot(kn).sqrt();
     let g = kn.truncate() * inverse_length;

@@ -33,13 +33,7 @@ pub(crate) fn walk_from_outlines<O: Observer>(
     start: &NormalGuess,
 ) -> Option<(WalkResult, NormalGuess)> {
     let difference = &context.difference;
-    let setting = difference.setting;
-    if setting.moving.rim_outline().len() == 0 || setting.fixed.rim_outline().len() == 0 {
-        return None;
-    }
-    let mut outlines = [Outline::NONE; 2];
-    outlines[0].set_moving(difference);
-    outlines[1].set_fixed(difference);
+    let outlines = outlines_of(difference)?;
     if let Some(portal) = portal_in_cap(difference, &outlines) {
         return Some((WalkResult::Portal(portal, PortalStatus::ReachedByWalk), *start));
     }
@@ -48,7 +42,8 @@ pub(crate) fn walk_from_outlines<O: Observer>(
         VertexPair::from_indices(moving, fixed)
     };
     Some(match maximise(&outlines, start.normal.truncate())? {
-        Maximum::At(slope, rims) => {
+        Maximum::At(slope, active) => {
+            let rims = active.map(|body| body.first_rim());
             let guess = NormalGuess { normal: normal_of(slope), near: Some(near(rims)) };
             walk_from_guess(context, &guess, &OUTLINE_LIMITS)
         }
@@ -56,6 +51,70 @@ pub(crate) fn walk_from_outlines<O: Observer>(
             (WalkResult::Silhouette { outward: -ahead, edge: [near(rims); 2] }, *start)
         }
     })
+}
+
+/// Contact that outlines predict.
+pub(crate) struct OutlineContact {
+    /// Contact normal `(a, 1)` in the shadow frame.
+    pub(crate) normal: DVec3,
+    /// Points of contact in the frames of P and of Q.
+    pub(crate) touching: [DVec3; 2],
+    /// Vertices near the points of contact. `None` for a contact inside a cap.
+    pub(crate) pair: Option<VertexPair>,
+}
+
+/// Computes the contact of the outlines of both bodies, starting at the slope `near`: in a cap, or where `f` is
+/// greatest.
+///
+/// `None` if a body has no outline, or the line misses the outlines.
+#[inline(never)]
+pub(crate) fn outline_contact(
+    difference: &MinkowskiDifference,
+    near: DVec2,
+) -> Option<OutlineContact> {
+    let outlines = outlines_of(difference)?;
+    let offset = difference.difference(DVec3::ZERO, DVec3::ZERO);
+    let in_bodies = |[p, q]: [DVec3; 2]| {
+        [difference.to_moving_frame(-p), difference.to_fixed_frame(q - offset)]
+    };
+    let in_cap = caps_of(&outlines).find_map(|Cap { body, rim, normal, opposite }| {
+        let opposite = opposite.lowest_point(normal);
+        let line = -opposite.truncate();
+        rim.enclosing_normals(line)?;
+        let height = rim.center.z - normal.truncate().dot(line - rim.center.truncate());
+        let mut points = [line.extend(height); 2];
+        points[1 - body] = opposite;
+        Some(OutlineContact { normal, touching: in_bodies(points), pair: None })
+    });
+    if in_cap.is_some() {
+        return in_cap;
+    }
+    let Maximum::At(slope, active) = maximise(&outlines, near)? else { return None };
+    let normal = normal_of(slope);
+    let [p, q] = [0, 1].map(|body: usize| {
+        let rims = &outlines[body].rims;
+        let points = active[body].weighted_rims();
+        points.map(|(rim, weight)| rims[rim].lowest_point(normal) * weight).sum::<DVec3>()
+    });
+    let vertices = [0, 1].map(|body: usize| {
+        let heavier = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };
+        let rim = active[body].weighted_rims().reduce(heavier).map_or(0, |(rim, _)| rim);
+        outlines[body].rims[rim].vertex
+    });
+    let pair = lowest_point_on_rims(difference, vertices, [normal; 2]).pair;
+    Some(OutlineContact { normal, touching: in_bodies([p, q]), pair: Some(pair) })
+}
+
+/// Returns the outlines of both bodies as parts of `M`. `None` if a body has no outline.
+fn outlines_of(difference: &MinkowskiDifference) -> Option<[Outline; 2]> {
+    let setting = difference.setting;
+    if setting.moving.rim_outline().len() == 0 || setting.fixed.rim_outline().len() == 0 {
+        return None;
+    }
+    let mut outlines = [Outline::NONE; 2];
+    outlines[0].set_moving(difference);
+    outlines[1].set_fixed(difference);
+    Some(outlines)
 }
 
 /// Rim of one body as a part of `M`, in the shadow frame.
@@ -192,6 +251,17 @@ impl RimInDifference {
         height - (u * u + v * v).sqrt()
     }
 
+    /// Returns the lowest point along `normal`, or the centre if all points are equally low.
+    fn lowest_point(&self, normal: DVec3) -> DVec3 {
+        if self.is_point {
+            return self.center;
+        }
+        let [u, v] = self.semi_axes;
+        let (along_u, along_v) = (u.dot(normal), v.dot(normal));
+        let reach = (along_u * along_u + along_v * along_v).sqrt();
+        if reach > 0.0 { self.center - (u * along_u + v * along_v) / reach } else { self.center }
+    }
+
     /// Returns the height of the lowest point along `normal`, with its derivatives.
     pub(super) fn expansion_at(&self, normal: DVec3) -> HeightExpansion {
         let mut local = HeightExpansion {
@@ -218,12 +288,21 @@ impl RimInDifference {
     }
 }
 
-/// Returns a portal in a cap, if the line passes through the cap at the lowest point of the other outline.
-/// `None` if it passes through no cap, or rounded coordinates do not prove that the portal contains it.
-fn portal_in_cap(difference: &MinkowskiDifference, outlines: &[Outline; 2]) -> Option<Portal> {
+/// Cap of the rim `rim` of `body` that may be the lowest face of `M`.
+struct Cap<'o> {
+    body: usize,
+    rim: &'o RimInDifference,
+    /// Normal `(a, 1)` of the cap.
+    normal: DVec3,
+    /// Rim of the other body that is lowest along the normal.
+    opposite: &'o RimInDifference,
+}
+
+/// Returns the caps at which `M` may end below, those of P first.
+fn caps_of(outlines: &[Outline; 2]) -> impl Iterator<Item = Cap<'_>> {
     let numbers = |of: usize| (0..outlines[of].count).map(move |k| (of, k));
-    numbers(0).chain(numbers(1)).find_map(|(of, k)| {
-        let rim = &outlines[of].rims[k];
+    numbers(0).chain(numbers(1)).filter_map(|(body, k)| {
+        let rim = &outlines[body].rims[k];
         if rim.ends == [false; 2] {
             return None;
         }
@@ -233,17 +312,25 @@ fn portal_in_cap(difference: &MinkowskiDifference, outlines: &[Outline; 2]) -> O
             return None;
         }
         let normal = normal_of(axis.truncate() / axis.z);
-        let other = &outlines[1 - of];
+        let other = &outlines[1 - body];
         let opposite = &other.rims[other.lowest(normal).0];
+        Some(Cap { body, rim, normal, opposite })
+    })
+}
+
+/// Returns a portal in a cap, if the line passes through the cap at the lowest point of the other outline.
+/// `None` if it passes through no cap, or rounded coordinates do not prove that the portal contains it.
+fn portal_in_cap(difference: &MinkowskiDifference, outlines: &[Outline; 2]) -> Option<Portal> {
+    caps_of(outlines).find_map(|Cap { body, rim, normal, opposite }| {
         let places = rim.enclosing_normals(-opposite.expansion_at(normal).gradient)?;
         let vertices = [rim.vertex, opposite.vertex];
-        let mut portal = if of == 0 {
+        let mut portal = if body == 0 {
             places.map(|place| lowest_point_on_rims(difference, vertices, [place, normal]))
         } else {
             let [own, opposite] = vertices;
             places.map(|place| lowest_point_on_rims(difference, [opposite, own], [normal, place]))
         };
-        if axis.z < 0.0 {
+        if rim.axis().z < 0.0 {
             portal.swap(0, 1);
         }
         let [a, b, c] = &portal;

@@ -36,16 +36,16 @@ const MIN_CURVATURE_RATIO: f64 = 1e-9;
 
 /// Active set of one body: indices of rims, and their multipliers, which sum to 1.
 #[derive(Clone, Copy, Default)]
-struct ActiveSet {
+pub(super) struct ActiveSet {
     rims: [usize; MAX_ACTIVE],
     multipliers: [f64; MAX_ACTIVE],
     count: usize,
 }
 
-/// Result of the maximisation, with one rim of each body.
+/// Result of the maximisation.
 pub(super) enum Maximum {
-    /// The slope of the maximum, and an active rim of each body.
-    At(DVec2, [usize; 2]),
+    /// The slope of the maximum, and the active set of each body.
+    At(DVec2, [ActiveSet; 2]),
     /// `f` has no maximum, because the line misses the outlines: along this lateral direction all of
     /// their difference is at positive coordinates. Contains the direction and the lowest rim of each body along
     /// it.
@@ -84,7 +84,7 @@ pub(super) fn maximise(outlines: &[Outline; 2], near: DVec2) -> Option<Maximum> 
         }
         slope = best + step;
         if square <= CONVERGED_STEP * CONVERGED_STEP * size {
-            return Some(Maximum::At(slope, active.map(|body| body.rims[0])));
+            return Some(Maximum::At(slope, active));
         }
         if square > most
             && let Some(rims) = separating_rims(outlines, slope)
@@ -92,7 +92,7 @@ pub(super) fn maximise(outlines: &[Outline; 2], near: DVec2) -> Option<Maximum> 
             return Some(Maximum::Separated(slope, rims));
         }
     }
-    Some(Maximum::At(best, active.map(|body| body.rims[0])))
+    Some(Maximum::At(best, active))
 }
 
 /// Returns the lowest rims along the lateral direction `ahead`, if the difference of the outlines lies
@@ -103,6 +103,17 @@ fn separating_rims(outlines: &[Outline; 2], ahead: DVec2) -> Option<[usize; 2]> 
 }
 
 impl ActiveSet {
+    /// Returns the first active rim.
+    pub(super) fn first_rim(&self) -> usize {
+        self.rims[0]
+    }
+
+    /// Returns the active rims with their multipliers.
+    pub(super) fn weighted_rims(&self) -> impl Iterator<Item = (usize, f64)> {
+        let rims = self.rims.iter().zip(&self.multipliers).take(self.count);
+        rims.map(|(&rim, &multiplier)| (rim, multiplier))
+    }
+
     /// Adds a rim with a multiplier of 0, or of 1 if it is the only one.
     fn add(&mut self, rim: usize) {
         if !self.rims[..self.count].contains(&rim) {

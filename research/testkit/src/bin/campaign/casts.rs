@@ -7,13 +7,18 @@ use colltrans_testkit::tally::Tally;
 
 use crate::{Asked, print_tally};
 
-/// The solvers: each one, and the collision translation algorithm as a first guess only.
-const WHO: [(&str, Solver, Option<cta::Options>); 4] = [
+/// The solvers: each one, and the collision translation algorithm as a first guess only, or with a guessed solution.
+const WHO: [(&str, Solver, Option<cta::Options>); 6] = [
     ("Cta", Solver::Cta, None),
     ("Cta, rough", Solver::Cta, Some(cta::Options::ROUGH)),
+    ("Cta, guess", Solver::Cta, Some(GUESS)),
+    ("Cta, guess across cells", Solver::Cta, Some(GUESS.with_keeps_to_cell(false))),
     ("Portal", Solver::Portal, None),
     ("Auto", Solver::Auto, None),
 ];
+
+/// The paper's algorithm in the neighbourhood of a guessed solution.
+const GUESS: cta::Options = cta::Options::new(cta::Start::Guess, cta::Until::Exit);
 
 /// Computes the first contact with a solver.
 fn first_contact_with(

@@ -30,23 +30,34 @@ impl AxisPair {
     /// Selects the pair that is farthest from a degenerate configuration with the unit direction `unit`. `moving`
     /// and `fixed` map the body frames to the frame of the setting.
     pub(crate) fn most_general(moving: &DMat3, fixed: &DMat3, unit: DVec3) -> Self {
-        let a = AXES.map(|axis| *moving * axis);
-        let b = AXES.map(|axis| *fixed * axis);
-        let along = |axes: &[DVec3; 4]| axes.map(|axis| 3.0 * (axis.dot(unit) * axis.dot(unit)));
-        let (a_along, b_along) = (along(&a), along(&b));
-        let (mut best, mut quality) = ((0, 0), -1.0);
-        for i in 0..4 {
-            for j in 0..4 {
-                // The squares of the three quantities for unit vectors, times a common factor 9.
-                let cosine = a[i].dot(b[j]);
-                let q = a_along[i].min(b_along[j]).min(9.0 - cosine * cosine);
+        // The squares of the three quantities for unit vectors, times a common factor 9.
+        let along = |matrix: &DMat3| levels_of(matrix.transpose() * unit).map(|l| 3.0 * (l * l));
+        let (a_along, b_along) = (along(moving), along(fixed));
+        let to_moving = moving.transpose();
+        let [x, y, z] =
+            [fixed.x_axis, fixed.y_axis, fixed.z_axis].map(|v| levels_of(to_moving * v));
+        let ((mut i, mut j), mut quality) = ((0, 0), -1.0);
+        for k in 0..4 {
+            if a_along[k] <= quality {
+                continue;
+            }
+            let cosines = levels_of(DVec3::new(x[k], y[k], z[k]));
+            for l in 0..4 {
+                let q = a_along[k].min(b_along[l]).min(9.0 - cosines[l] * cosines[l]);
                 if q > quality {
-                    (best, quality) = ((i, j), q);
+                    ((i, j), quality) = ((k, l), q);
                 }
             }
         }
-        Self { moving: (best.0, a[best.0]), fixed: (best.1, b[best.1]) }
+        Self { moving: (i, *moving * AXES[i]), fixed: (j, *fixed * AXES[j]) }
     }
+}
+
+/// Returns the products of a vector with all [`AXES`].
+#[inline]
+fn levels_of(v: DVec3) -> [f64; 4] {
+    let (sum, difference) = (v.y + v.z, v.y - v.z);
+    [v.x + sum, v.x - sum, difference - v.x, -difference - v.x]
 }
 
 #[cfg(test)]

@@ -216,6 +216,18 @@ impl<'a> MinkowskiDifference<'a> {
             + self.offset
     }
 
+    /// Returns the points of contact after the translation `height`, in the frames of P and of Q: the vertex of `pair`
+    /// that does not belong to `body`, and the point of `body` (0 for P, 1 for Q) that it meets.
+    pub(crate) fn points_on_line(&self, pair: VertexPair, body: usize, height: f64) -> [DVec3; 2] {
+        let [p, q] = self.setting.vertices(pair);
+        let up = DVec3::Z * height;
+        if body == 0 {
+            [self.to_moving_frame(self.difference(DVec3::ZERO, q) - up), q]
+        } else {
+            [p, self.to_fixed_frame(up - self.difference(p, DVec3::ZERO))]
+        }
+    }
+
     /// Returns the point of the widened `M` for a pair of vertices: the corner of the widening rectangle
     /// around it that is lowest along `normal`.
     #[inline(always)]

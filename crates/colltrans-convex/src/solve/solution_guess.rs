@@ -8,13 +8,13 @@
 //! 3. Support points of `M`, each along a slope that should move its shadow to the line (a quasi-Newton method on the
 //!    concave `f` of [`portal`](super::portal), whose gradient is the shadow).
 //!
-//! `delta` is the lateral distance that is left, or the mean edge of the bodies if this is longer.
+//! `delta` is the lateral distance that is left, or an edge of the bodies if this is longer.
 
 use glam::{DMat2, DVec2, DVec3};
 
 use super::cta::LastSolution;
 use super::observe::Observer;
-use super::portal::{Context, NormalGuess, outline_contact, support_derivatives};
+use super::portal::{Context, NormalGuess, outline_contact};
 use crate::body::ConvexPolyhedron;
 use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 
@@ -40,12 +40,13 @@ const BETWEEN_SHARE: f64 = 0.05;
 /// Minimum cosine between the normal of a large face and the direction at which the face is tried.
 const MIN_FACE_COSINE: f64 = 0.05;
 
-/// Sagitta of a side of a regular polygon with `n / 2` corners in a unit circle, times the square of `n`.
-const SAGITTA: f64 = 20.0;
+/// `delta` on bodies with rims, at least, as a multiple of the radius over the number of vertices (measured).
+const RIM_EDGES: f64 = 8.0;
 
 /// Guesses the solution. `None` if the bodies seem to miss each other.
 pub(super) fn guessed_solution<O: Observer>(context: &mut Context<O>) -> Option<LastSolution> {
-    let first = NormalGuess::new(&context.difference).normal;
+    let (NormalGuess { normal: first, .. }, curvatures) =
+        NormalGuess::with_curvatures(&context.difference);
     if first.z <= 0.0 {
         return None;
     }
@@ -63,7 +64,7 @@ pub(super) fn guessed_solution<O: Observer>(context: &mut Context<O>) -> Option<
             return found;
         }
     }
-    Some(SupportSearch::new(point, first.truncate()).run(context))
+    Some(SupportSearch::new(point, first.truncate()).run(context, curvatures))
 }
 
 /// Returns the mean edge of the body with the longer edges.
@@ -77,15 +78,12 @@ fn mean_edge(difference: &MinkowskiDifference) -> f64 {
 fn solution_on_outlines(difference: &MinkowskiDifference, near: DVec2) -> Option<LastSolution> {
     let found = outline_contact(difference, near)?;
     let setting = difference.setting;
-    let mut touching = found.touching;
-    // Points of a circle are outside of a polygon with its corners on the circle.
-    for (point, body) in touching.iter_mut().zip([setting.moving, setting.fixed]) {
-        let sagitta = SAGITTA / (body.vertices().len() as f64).powi(2);
-        *point += (body.inertia().center - *point) * sagitta;
-    }
+    let edge =
+        |body: &ConvexPolyhedron| RIM_EDGES * body.inertia().radius / body.vertices().len() as f64;
+    let least = edge(setting.moving).max(edge(setting.fixed));
     Some(LastSolution {
-        touching,
-        half_side: setting.lateral_displacement(touching).max(mean_edge(difference)),
+        touching: found.touching,
+        half_side: setting.lateral_displacement(found.touching).max(least),
         normal: difference.to_moving_frame(found.normal),
         pair: found.pair,
     })
@@ -121,14 +119,7 @@ fn solution_on_large_face<O: Observer>(
     }
     let (body, normal, support) = found?;
     let difference = &context.difference;
-    let [p, q] = setting.vertices(support.pair);
-    // The point of the face that meets the vertex of the other body at the translation `highest`.
-    let up = DVec3::Z * highest;
-    let touching = if body == 0 {
-        [difference.to_moving_frame(difference.difference(DVec3::ZERO, q) - up), q]
-    } else {
-        [p, difference.to_fixed_frame(up - difference.difference(p, DVec3::ZERO))]
-    };
+    let touching = difference.points_on_line(support.pair, body, highest);
     Some(LastSolution {
         touching,
         half_side: mean_edge(difference),
@@ -151,11 +142,13 @@ impl SupportSearch {
         Self { points: [point; MAX_SUPPORTS], count: 1, nearest: point, slope }
     }
 
-    /// Searches until a support point is near the line, or no step brings another one.
-    fn run<O: Observer>(mut self, context: &mut Context<O>) -> LastSolution {
-        let (_, ellipsoids) = context.difference.inertia_ellipsoids();
-        let normal = self.slope.extend(1.0);
-        let curvatures = ellipsoids.map(|k| support_derivatives(&k, normal).1);
+    /// Searches until a support point is near the line, or no step brings another one. `curvatures` are the Hessians of
+    /// the ellipsoids' support functions.
+    fn run<O: Observer>(
+        mut self,
+        context: &mut Context<O>,
+        curvatures: [DMat2; 2],
+    ) -> LastSolution {
         let least = mean_edge(&context.difference);
         let of_ellipsoids = (curvatures[0] + curvatures[1]).inverse();
         // Estimates the inverse of the negative Hessian of `f`.

@@ -15,8 +15,8 @@ pub struct Options {
     /// End of the minimisation; portal refinement continues from there.
     pub until: Until,
     /// Whether a cell shift ends in its cell. If it does, planar problems are the paper's steps. If not, a
-    /// shift continues into neighbouring cells where little of the region is left, which takes fewer planar
-    /// problems and less time.
+    /// shift continues into neighbouring cells where little of the region is left, and in `N(p)` planar problems
+    /// are first solved where their answers predict the solution. This takes fewer planar problems and less time.
     pub keeps_to_cell: bool,
     /// Value of `phi` at which the region of levels is cut.
     pub cuts: Cuts,

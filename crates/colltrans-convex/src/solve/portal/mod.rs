@@ -36,7 +36,7 @@ pub(crate) use enclose::{
 pub(crate) use face_walk::{
     ContactPortal, ELLIPSOID_LIMITS, WalkResult, walk_from_guess, walk_from_last,
 };
-pub(crate) use normal_guess::{NormalGuess, support_derivatives};
+pub(crate) use normal_guess::NormalGuess;
 pub(crate) use opposed_faces::opposed_face_contact;
 pub(crate) use outline::{outline_contact, walk_from_outlines};
 pub(crate) use overlap::{Overlap, overlap};

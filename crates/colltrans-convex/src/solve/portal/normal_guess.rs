@@ -92,8 +92,16 @@ impl NormalGuess {
     /// Returns the guess from the inertia ellipsoids.
     #[inline]
     pub(crate) fn from_ellipsoids(difference: &MinkowskiDifference) -> Self {
+        Self::with_curvatures(difference).0
+    }
+
+    /// Returns the guess from the inertia ellipsoids, and the Hessians of their support functions near it, in the
+    /// lateral components of a normal. These are zero for a lateral guess.
+    #[inline]
+    pub(crate) fn with_curvatures(difference: &MinkowskiDifference) -> (Self, [DMat2; 2]) {
         let (center, [a, b]) = difference.inertia_ellipsoids();
         let mut normal = fitted_entry_normal(difference.setting, center, [&a, &b]);
+        let mut curvatures = [DMat2::ZERO; 2];
         if normal.z > 0.0 {
             let ((p, hessian_p), (q, hessian_q)) =
                 (support_derivatives(&a, normal), support_derivatives(&b, normal));
@@ -101,8 +109,9 @@ impl NormalGuess {
             if step.length_squared() < MAX_NEWTON_STEP * MAX_NEWTON_STEP * normal.length_squared() {
                 normal += step.extend(0.0);
             }
+            curvatures = [hessian_p, hessian_q];
         }
-        Self { normal, near: None }
+        (Self { normal, near: None }, curvatures)
     }
 
     /// Builds a guess from a normal (shadow frame) and a vertex pair that another solver has found.
@@ -241,7 +250,7 @@ pub(super) fn predicted_slope(
 /// Returns the gradient and the Hessian of an ellipsoid's support function with respect to the lateral
 /// components of a normal.
 #[inline]
-pub(crate) fn support_derivatives(k: &Symmetric, normal: DVec3) -> (DVec2, DMat2) {
+fn support_derivatives(k: &Symmetric, normal: DVec3) -> (DVec2, DMat2) {
     let kn = k.times_vector(normal);
     let inverse_length = 1.0 / normal.dot(kn).sqrt();
     let g = kn.truncate() * inverse_length;

@@ -15,7 +15,7 @@ use glam::{DMat2, DVec2, DVec3};
 use super::face_walk::{OUTLINE_LIMITS, WalkResult, walk_from_guess};
 use super::outline_maximum::{Maximum, maximise};
 use super::{Context, NormalGuess, Portal, PortalStatus, normal_of};
-use crate::body::{MAX_RIMS, Rim};
+use crate::body::{ConvexPolyhedron, MAX_RIMS, Rim};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
 use crate::solve::observe::Observer;
@@ -73,18 +73,13 @@ pub(crate) fn outline_contact(
     near: DVec2,
 ) -> Option<OutlineContact> {
     let outlines = outlines_of(difference)?;
-    let offset = difference.difference(DVec3::ZERO, DVec3::ZERO);
-    let in_bodies = |[p, q]: [DVec3; 2]| {
-        [difference.to_moving_frame(-p), difference.to_fixed_frame(q - offset)]
-    };
     let in_cap = caps_of(&outlines).find_map(|Cap { body, rim, normal, opposite }| {
-        let opposite = opposite.lowest_point(normal);
-        let line = -opposite.truncate();
-        rim.enclosing_normals(line)?;
-        let height = rim.center.z - normal.truncate().dot(line - rim.center.truncate());
-        let mut points = [line.extend(height); 2];
-        points[1 - body] = opposite;
-        Some(OutlineContact { normal, touching: in_bodies(points), pair: None })
+        rim.enclosing_normals(-opposite.expansion_at(normal).gradient)?;
+        let vertices = if body == 0 { [rim, opposite] } else { [opposite, rim] }.map(|r| r.vertex);
+        let lowest = lowest_point_on_rims(difference, vertices, [normal; 2]);
+        let height = normal.dot(lowest.coordinates);
+        let touching = difference.points_on_line(lowest.pair, body, height);
+        Some(OutlineContact { normal, touching, pair: None })
     });
     if in_cap.is_some() {
         return in_cap;
@@ -96,13 +91,25 @@ pub(crate) fn outline_contact(
         let points = active[body].weighted_rims();
         points.map(|(rim, weight)| rims[rim].lowest_point(normal) * weight).sum::<DVec3>()
     });
+    let offset = difference.difference(DVec3::ZERO, DVec3::ZERO);
+    let touching = [
+        inside_rims(difference.setting.moving, difference.to_moving_frame(-p)),
+        inside_rims(difference.setting.fixed, difference.to_fixed_frame(q - offset)),
+    ];
     let vertices = [0, 1].map(|body: usize| {
         let heavier = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };
         let rim = active[body].weighted_rims().reduce(heavier).map_or(0, |(rim, _)| rim);
         outlines[body].rims[rim].vertex
     });
     let pair = lowest_point_on_rims(difference, vertices, [normal; 2]).pair;
-    Some(OutlineContact { normal, touching: in_bodies([p, q]), pair: Some(pair) })
+    Some(OutlineContact { normal, touching, pair: Some(pair) })
+}
+
+/// Moves a point of a rim towards the centre of the body, by the distance of a rim of `n / 2` corners from their circle.
+fn inside_rims(body: &ConvexPolyhedron, point: DVec3) -> DVec3 {
+    let corners = 0.5 * body.vertices().len() as f64;
+    let sagitta = 0.5 * (std::f64::consts::PI / corners).powi(2);
+    point.lerp(body.inertia().center, sagitta)
 }
 
 /// Returns the outlines of both bodies as parts of `M`. `None` if a body has no outline.

@@ -2,6 +2,7 @@
 
 mod egjk;
 mod hwalk;
+mod portals;
 mod pqp;
 mod raycast;
 mod vclip;

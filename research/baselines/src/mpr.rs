@@ -1,4 +1,4 @@
-//! Minkowski portal refinement: Snethen, "XenoCollide: complex collision made simple", Game Programming Gems 7, 2008,
+//! Minkowski portal refinement: Snethen, "`XenoCollide`: complex collision made simple", Game Programming Gems 7, 2008,
 //! after the author's program.
 //!
 //! - `M = {q - p}` is the Minkowski difference in the fixed body's frame. The bodies overlap if it contains the origin.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
+use colltrans_lab::counting::KINDS;
 use colltrans_lab::experiments;
 use colltrans_lab::plan::{Plan, Scale};
 
@@ -71,11 +72,30 @@ pub(crate) enum Command {
         #[command(flatten)]
         options: Options,
     },
+    /// Algorithms for neighbouring questions on the same bodies: overlap, growth distance, ray cast
+    #[command(after_help = RESULTS)]
+    Casts {
+        #[command(flatten)]
+        options: Options,
+    },
     /// All figures and tables
     #[command(after_help = RESULTS)]
     All {
         #[command(flatten)]
         options: Options,
+    },
+    /// Queries without timing, for research/lab/instructions.py, which counts their instructions
+    #[command(hide = true)]
+    Count {
+        /// The kind of the bodies
+        #[arg(value_parser = KINDS)]
+        kind: String,
+        /// The number of vertices of each body
+        #[arg(value_parser = clap::value_parser!(u32).range(50..=200_000))]
+        vertices: u32,
+        /// The number of queries of each contestant
+        #[arg(value_parser = clap::value_parser!(u32).range(1..=1000))]
+        queries: u32,
     },
     /// The paper's figures 1 to 10, reproduced: two cubes, and the steps of the algorithm
     ///

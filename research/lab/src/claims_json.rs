@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use crate::claims::Claim;
+use crate::claims::{Claim, Subject};
 use crate::report::Report;
 
 /// Returns all claims of a run.
@@ -34,6 +34,8 @@ fn claim_json(claim: &Claim) -> Value {
         "statement": claim.paper.statement,
         "paper": claim.paper.paper,
         "place": claim.paper.place,
+        "theme": claim.paper.theme.to_string(),
+        "is_about_cta": claim.paper.subject == Subject::Cta,
         "measured": measured.collect::<Vec<_>>(),
         "verdict": claim.verdict.to_string(),
         "reason": claim.why.as_ref().map(|why| why.reason.to_string()),

@@ -5,13 +5,14 @@
 //! figures (11 to 19) and a table; each is an [`Experiment`] here.
 //!
 //! - [`claims`] (hypotheses) and [`plan`] (scale); `shapes`, `shadow`, [`settings`] (test cases).
-//! - `experiments` (measurements, by `solvers`), [`statistics`] (intervals), [`finding`] (figures, tables,
+//! - `experiments` (measurements, by `solvers`), [`counting`] (queries under callgrind), [`statistics`] (intervals), [`finding`] (figures, tables,
 //!   verdicts).
 //! - [`draw`], [`csv`], `claims_json`, [`report`] (output). [`run()`] performs all stages and writes the
 //!   files.
 
 pub mod claims;
 mod claims_json;
+pub mod counting;
 pub mod csv;
 pub mod draw;
 mod error;
@@ -39,7 +40,8 @@ pub use run::{Summary, run};
 /// A figure or table of the paper.
 #[derive(Debug, Clone, Copy)]
 pub struct Experiment {
-    /// Identifier: `"section-3"`, `"figure-11"` ... `"figure-19"`, `"table-1"`, `"beyond"`.
+    /// Identifier: `"section-3"`, `"figure-11"` ... `"figure-19"`, `"table-1"`, `"beyond"`,
+    /// `"casts-2026"`.
     pub id: &'static str,
     /// Topic in a few words.
     pub title: &'static str,
@@ -63,6 +65,8 @@ impl Experiment {
     /// Returns the identifier as text: `Figure 12`.
     pub fn name(&self) -> String {
         let name = self.id.replacen("figure-", "Figure ", 1).replacen("table-", "Table ", 1);
-        name.replacen("section-3", "Section III", 1).replacen("beyond", "Beyond the paper", 1)
+        name.replacen("section-3", "Section III", 1)
+            .replacen("beyond", "Beyond the paper", 1)
+            .replacen("casts-2026", "Casts, 2026", 1)
     }
 }

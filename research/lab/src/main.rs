@@ -29,7 +29,13 @@ fn main() -> ExitCode {
             (selected_experiments("section-", &numbers), options)
         }
         Command::Beyond { options } => (selected_experiments("", &["beyond".into()]), options),
+        Command::Casts { options } => (selected_experiments("casts-", &["2026".into()]), options),
         Command::All { options } => (experiments().to_vec(), options),
+        Command::Count { kind, vertices, queries } => {
+            let counted =
+                colltrans_lab::counting::count_queries(&kind, vertices as usize, queries as usize);
+            return print_result(&Ok(counted));
+        }
         Command::Pictures { output } => {
             return print_result(&colltrans_lab::figures::write(&output));
         }

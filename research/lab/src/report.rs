@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use std::time::Duration;
 
 use crate::Experiment;
-use crate::claims::{Claim, PaperClaim, READINGS, Verdict, Why};
+use crate::claims::{Claim, PaperClaim, Subject, Theme, Verdict, Why};
 use crate::draw::Picture;
 use crate::finding::{Figure, Finding, Table};
 use crate::plan::Plan;
@@ -54,20 +54,46 @@ pub(crate) const UNOPTIMISED: &str = "This is an unoptimised build: its times me
 const VERDICTS: [Verdict; 4] =
     [Verdict::Fails, Verdict::Undecided, Verdict::Holds, Verdict::Better];
 
-/// Returns the number of claims with each verdict, as text.
+/// Returns the number of claims about CTA with each verdict, and of those about other algorithms.
 pub(crate) fn verdict_counts(done: &[Done]) -> String {
-    let claims = || done.iter().flat_map(|done| &done.finding.claims);
-    let with = |verdict: Verdict| claims().filter(|claim| claim.verdict == verdict).count();
-    let all = claims().count();
-    if all == 0 {
+    let of =
+        |subject: Subject| all_claims(done).filter(move |claim| claim.paper.subject == subject);
+    let all = of(Subject::Cta).count();
+    if all_claims(done).count() == 0 {
         return "No claim was put to the test".into();
     }
+    let with = |verdict: Verdict| of(Subject::Cta).filter(|claim| claim.verdict == verdict).count();
     let [fail, undecided, hold, better] = VERDICTS.map(with);
+    let others = of(Subject::Other);
+    let kept = of(Subject::Other).filter(|claim| claim.verdict.is_kept());
     format!(
-        "{} of {all} claims hold, {better} of them better than the paper says; {fail} do not hold, \
-         {undecided} are undecided",
-        hold + better
+        "{} of {all} claims about CTA hold, {better} of them better than the paper states; {fail} do not hold, \
+         {undecided} are undecided. {} of {} claims about other algorithms hold",
+        hold + better,
+        kept.count(),
+        others.count()
     )
+}
+
+/// Returns a line for each theme: the number of claims that hold, and the others with verdict and reason.
+pub(crate) fn theme_lines(done: &[Done]) -> Vec<String> {
+    let line = |theme: Theme| {
+        let of = || all_claims(done).filter(|claim| claim.paper.theme == theme);
+        let kept = of().filter(|claim| claim.verdict.is_kept()).count();
+        let open = of().filter_map(|claim| {
+            let why = claim.why.as_ref()?;
+            Some(format!("{} {} ({})", claim.paper.id, claim.verdict, why.reason))
+        });
+        let open = open.collect::<Vec<_>>().join(", ");
+        let rest = if open.is_empty() { String::new() } else { format!("; {open}") };
+        (of().count() > 0).then(|| format!("{theme}: {kept} of {} hold{rest}", of().count()))
+    };
+    Theme::ALL.into_iter().filter_map(line).collect()
+}
+
+/// Iterates over all claims.
+fn all_claims(done: &[Done]) -> impl Iterator<Item = &Claim> {
+    done.iter().flat_map(|done| &done.finding.claims)
 }
 
 /// Writes the whole page.
@@ -86,9 +112,6 @@ fn write_page(page: &mut String, report: &Report) -> fmt::Result {
     )?;
     write_state(page, report)?;
     write_overview(page, report.done)?;
-    if let Some(readings) = readings(report.done) {
-        writeln!(page, "<p>{}</p>", Escaped(&readings))?;
-    }
     write_reasons(page, report.done)?;
     write_facts(page, report)?;
     page.push_str("</header>\n<main>\n");
@@ -102,6 +125,11 @@ fn write_page(page: &mut String, report: &Report) -> fmt::Result {
 /// Writes the state of the run: verdicts, missing experiments, and a warning for unoptimised builds.
 fn write_state(page: &mut String, report: &Report) -> fmt::Result {
     writeln!(page, "<p><strong>{}.</strong></p>", verdict_counts(report.done))?;
+    page.push_str("<ul class=\"themes\">\n");
+    for line in theme_lines(report.done) {
+        writeln!(page, "<li>{}</li>", Escaped(&line))?;
+    }
+    page.push_str("</ul>\n");
     let (done, all) = (report.done.len(), report.all);
     if done < all {
         let state = format!("{done} of {all} experiments were finished when this was written.");
@@ -157,28 +185,6 @@ fn write_overview(page: &mut String, done: &[Done]) -> fmt::Result {
     }
     page.push_str("</div>\n");
     Ok(())
-}
-
-/// Returns which reading of "thin" fits the paper: for each, the claims that hold with it; `None` if none was
-/// judged.
-pub(crate) fn readings(done: &[Done]) -> Option<String> {
-    let claims = || done.iter().flat_map(|done| &done.finding.claims);
-    let each = READINGS.map(|(ending, name)| {
-        let of = || claims().filter(|claim| claim.paper.id.ends_with(ending));
-        let fails: Vec<_> = of()
-            .filter(|claim| !claim.verdict.is_kept())
-            .map(|claim| claim.paper.id.trim_end_matches(ending))
-            .collect();
-        let beside =
-            if fails.is_empty() { "all".into() } else { format!("not {}", fails.join(", ")) };
-        (
-            of().count(),
-            format!("{name}: {} of {} ({beside})", of().count() - fails.len(), of().count()),
-        )
-    });
-    let text = each.each_ref().map(|(_, text)| text.as_str()).join("; ");
-    (each[0].0 > 0)
-        .then(|| format!("Claims about thin faces that hold, by what \"thin\" is: {text}."))
 }
 
 /// Writes the first sentence of the reason for each claim that fails or is undecided.
@@ -260,7 +266,7 @@ fn write_table(page: &mut String, table: &Table) -> fmt::Result {
 
 /// Writes a claim with its measurements and reason.
 fn write_claim(page: &mut String, claim: &Claim) -> fmt::Result {
-    let PaperClaim { id, statement, paper, place, criteria } = claim.paper;
+    let PaperClaim { id, statement, paper, place, criteria, .. } = claim.paper;
     write!(
         page,
         "<li class=\"{}\"><span class=\"verdict\">{}</span> <span class=\"faint\">{id}</span>\n\

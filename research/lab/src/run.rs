@@ -132,8 +132,8 @@ impl fmt::Display for Summary {
                 }
             }
         }
-        if let Some(readings) = report::readings(&self.done) {
-            writeln!(f, "{readings}")?;
+        for line in report::theme_lines(&self.done) {
+            writeln!(f, "{line}")?;
         }
         if !self.provenance.is_optimised {
             writeln!(f, "{}", report::UNOPTIMISED)?;

@@ -105,6 +105,16 @@ impl Setting {
         Self { moving: pose(turn_p, DVec3::ZERO), fixed: pose(turn_q, offset), direction }
     }
 
+    /// Returns the setting with the moving body displaced along the direction, in world units.
+    ///
+    /// # Panics
+    /// If the body leaves the range of poses.
+    #[must_use]
+    pub fn advanced(&self, by: f64) -> Self {
+        let moving = self.moving.translated_by(self.direction * by).expect("a few diameters");
+        Self { moving, ..*self }
+    }
+
     /// Draws `count` settings about a random one, each `delta` diameters from the next: the moving body is
     /// displaced, rotated about its centre, or moved along a screw.
     ///

@@ -13,6 +13,7 @@ use std::thread;
 use colltrans::ConvexPolyhedron;
 use colltrans_baselines::hwalk::Hierarchy;
 use colltrans_baselines::pqp::Soup;
+use colltrans_baselines::vclip::Shell;
 use glam::DVec3;
 
 use colltrans_testkit::random::Random;
@@ -122,6 +123,7 @@ pub struct Bodies {
     pub(crate) middles: [DVec3; 2],
     soups: OnceLock<[Soup; 2]>,
     hierarchies: OnceLock<[Hierarchy; 2]>,
+    shells: OnceLock<[Shell; 2]>,
 }
 
 impl Bodies {
@@ -134,8 +136,8 @@ impl Bodies {
         };
         let middles = pair.each_ref().map(mean);
         let diameter = pair.iter().zip(middles).map(|(body, middle)| radius(body, middle)).sum();
-        let (soups, hierarchies) = (OnceLock::new(), OnceLock::new());
-        Self { pair, diameter, middles, soups, hierarchies }
+        let (soups, hierarchies, shells) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        Self { pair, diameter, middles, soups, hierarchies, shells }
     }
 
     /// Returns the triangulated bodies with bounding volumes.
@@ -147,6 +149,13 @@ impl Bodies {
     pub(crate) fn hierarchies(&self) -> &[Hierarchy; 2] {
         self.hierarchies.get_or_init(|| {
             compute_both(|i| Hierarchy::new(&self.pair[i]).expect("an ellipsoid is solid"))
+        })
+    }
+
+    /// Returns the features of the bodies with their neighbours.
+    pub(crate) fn shells(&self) -> &[Shell; 2] {
+        self.shells.get_or_init(|| {
+            compute_both(|i| Shell::new(&self.pair[i]).expect("an ellipsoid is solid"))
         })
     }
 

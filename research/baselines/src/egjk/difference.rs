@@ -17,6 +17,8 @@ pub(crate) struct Difference<'a> {
     reach: f64,
     /// The last support vertices.
     seed: VertexPair,
+    /// Whether a query since the last reset has ended.
+    pub(super) has_seed: bool,
     pub(super) search: SupportSearch,
 }
 
@@ -31,12 +33,12 @@ impl<'a> Difference<'a> {
         };
         let reach = reach(moving) + reach(fixed);
         let (seed, search) = (VertexPair::default(), SupportSearch::default());
-        Self { moving, fixed, reach, seed, search }
+        Self { moving, fixed, reach, seed, has_seed: false, search }
     }
 
     /// Resets the start of climbing to the first vertices.
     pub(crate) fn reset(&mut self) {
-        self.seed = VertexPair::default();
+        (self.seed, self.has_seed) = (VertexPair::default(), false);
     }
 
     /// Returns the size `S`, a bound on the distance of points of `M` from the origin.
@@ -63,9 +65,14 @@ impl<'a> Difference<'a> {
         climbed: &mut u32,
     ) -> Corner {
         let in_moving = relative.to_moving(direction);
+        if self.search == SupportSearch::FirstVertex && !self.has_seed {
+            self.seed = VertexPair::default();
+        }
         let mut find = |body: &ConvexPolyhedron, along: DVec3, from: VertexId| {
             VertexId(match self.search {
-                SupportSearch::Climbing => climb_to_support(body, along, from.0, climbed),
+                SupportSearch::Climbing | SupportSearch::FirstVertex => {
+                    climb_to_support(body, along, from.0, climbed)
+                }
                 SupportSearch::Linear => scan_for_support(body, along, climbed),
             })
         };

@@ -37,9 +37,14 @@ const MAX_IDLE_ITERATIONS: u32 = 30;
 /// Method by which support points of a body are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SupportSearch {
-    /// Hill climbing along edges from the last support point: Cameron's enhancement.
+    /// Hill climbing along edges from the last support point, also from one iteration to the next of a query
+    /// from scratch.
     #[default]
     Climbing,
+    /// Hill climbing as in Cameron's program. In a query from scratch (the first one, and the first one after
+    /// [`Egjk::reset`]), every climb of every iteration starts at the first vertex. Later queries climb from
+    /// the last support point.
+    FirstVertex,
     /// Scan of all vertices, as in the original GJK, in linear time.
     Linear,
 }
@@ -65,7 +70,7 @@ pub struct Steps {
 /// Solver for a sequence of distance queries between two bodies, with temporal coherence.
 ///
 /// Cameron's enhancement: hill climbing (`climb`) starts at the last support point, and the simplex is kept between
-/// queries. Signed volumes yield the nearest point of the simplex (`simplex`). On more than 200,000 tied, touching,
+/// queries ([`SupportSearch`] has the start from scratch). Signed volumes yield the nearest point of the simplex (`simplex`). On more than 200,000 tied, touching,
 /// thin and coherent settings rounding stalled the search 9 times, on bodies at least a thousand times longer than
 /// thick, with gaps up to `2.9e-13 S`.
 ///
@@ -179,6 +184,7 @@ impl<'a> Egjk<'a> {
         }
         steps.gap = best.gap();
         self.simplex = best.simplex;
+        self.difference.has_seed = true;
         let [on_moving, on_fixed] = self.difference.nearest_points(&best.simplex);
         Proximity {
             distance: if best.upper <= noise { 0.0 } else { best.upper },

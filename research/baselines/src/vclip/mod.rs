@@ -35,6 +35,8 @@ pub struct Steps {
     /// Number of scans of all faces of a body, in local minima of the walk, for example between overlapping
     /// bodies.
     pub scans: u32,
+    /// Number of iterations: pairs of features and scanned faces.
+    pub iterations: u32,
     /// Number of times that an unproven result was left for nearer features in its surroundings, or for
     /// another walk.
     pub rescues: u32,
@@ -121,10 +123,9 @@ impl Settled {
     /// Converts the answer of V-Clip to the world.
     fn into_proximity(self, fixed_pose: &Pose, work: Work) -> Proximity<Steps> {
         let Self { gap, rescues, gave_up, .. } = self;
-        self.proximity(
-            fixed_pose,
-            Steps { pairs: work.pairs, scans: work.scans, rescues, gap, gave_up },
-        )
+        let Work { pairs, scans, scanned } = work;
+        let iterations = pairs + scanned;
+        self.proximity(fixed_pose, Steps { pairs, scans, iterations, rescues, gap, gave_up })
     }
 
     /// Converts the answer to the world.

@@ -51,8 +51,10 @@ fn check(name: &str, answer: &Proximity<Steps>, moving: Placed, fixed: Placed) -
 
 fn check_from_scratch(name: &str, moving: Placed, fixed: Placed) -> Distance {
     let egjk = || Egjk::new(moving.0, fixed.0);
-    let mut linear = egjk().with_support_search(SupportSearch::Linear);
-    check(name, &linear.distance(moving.1, fixed.1), moving, fixed);
+    for search in [SupportSearch::Linear, SupportSearch::FirstVertex] {
+        let mut other = egjk().with_support_search(search);
+        check(name, &other.distance(moving.1, fixed.1), moving, fixed);
+    }
     check(name, &egjk().distance(moving.1, fixed.1), moving, fixed)
 }
 
@@ -244,6 +246,27 @@ fn repeated_query_takes_one_iteration_until_reset() {
     assert_eq!((again.steps.iterations, again.steps.supports, again.steps.climbed), (1, 1, 2));
     egjk.reset();
     assert_eq!(egjk.distance(&at, &Pose::IDENTITY), first);
+}
+
+/// From the first vertex, every climb of a query from scratch crosses the body again. A later query starts at the last
+/// support points in both modes.
+#[test]
+fn first_vertex_starts_climbs_of_queries_from_scratch_only() {
+    let (p, q) = (rings(60, DVec3::new(1.0, 0.7, 1.3)), rings(60, DVec3::ONE));
+    let mut rng = Random::new(8);
+    let mut solvers = [SupportSearch::Climbing, SupportSearch::FirstVertex]
+        .map(|search| Egjk::new(&p, &q).with_support_search(search));
+    let mut climbed = [0; 2];
+    for _ in 0..20 {
+        let (at, world) = (pose(&mut rng, 4.0), pose(&mut rng, 0.0));
+        for (egjk, climbed) in solvers.iter_mut().zip(&mut climbed) {
+            egjk.reset();
+            *climbed += egjk.distance(&at, &world).steps.climbed;
+            let again = egjk.distance(&at, &world).steps;
+            assert_eq!((again.iterations, again.supports, again.climbed), (1, 1, 2));
+        }
+    }
+    assert!(climbed[1] > 2 * climbed[0], "{climbed:?}");
 }
 
 #[test]

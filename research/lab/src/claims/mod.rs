@@ -2,8 +2,9 @@
 //! which it is judged here.
 //!
 //! A claim has one or more *criteria*: a measured number and the band of its values for which the claim holds. For a
-//! number "about" in the paper, the band is a quarter in either direction; for a range or limit, it is that. Criteria
-//! without limits are quoted, not judged.
+//! number "about" in the paper, the band is a quarter in either direction; for a range or limit, it is that. A word
+//! without a number ("several", "clearly", "sublinear") has a limit of a quarter as well. Criteria without limits are
+//! quoted, not judged.
 //!
 //! The verdict on a criterion depends on the 95 % interval of its number:
 //! - *holds*: the interval is in the band, or extends beyond it only on the side that is better for the algorithm.
@@ -29,8 +30,63 @@ pub struct PaperClaim {
     pub paper: &'static str,
     /// Section and figure; the text of the paper used here has no page numbers.
     pub place: &'static str,
+    /// Theme in the summary.
+    pub theme: Theme,
+    /// Algorithm that the claim is about.
+    pub subject: Subject,
     /// Criteria by which the claim is judged.
     pub criteria: &'static [Criterion],
+}
+
+/// Theme of claims in the summary, in the paper's order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Theme {
+    /// Section III.
+    Step,
+    /// Section V-A and V-B.
+    Scratch,
+    /// Section V-C.
+    Coherence,
+    /// Section V-D, figures 15 to 17.
+    Rivals,
+    /// Section V-D, figure 18.
+    IncrementalRivals,
+    /// Section V-E.
+    Variable,
+}
+
+impl Theme {
+    /// All themes, in order.
+    pub const ALL: [Self; 6] = [
+        Self::Step,
+        Self::Scratch,
+        Self::Coherence,
+        Self::Rivals,
+        Self::IncrementalRivals,
+        Self::Variable,
+    ];
+}
+
+impl fmt::Display for Theme {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Step => "a step of the minimisation",
+            Self::Scratch => "queries from scratch",
+            Self::Coherence => "queries with initialisation",
+            Self::Rivals => "from scratch, compared with EGJK and PQP",
+            Self::IncrementalRivals => "with initialisation, compared with EGJK",
+            Self::Variable => "variable coherence, compared with H-Walk",
+        })
+    }
+}
+
+/// Algorithm that a claim is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    /// The collision translation algorithm, alone or compared with another one.
+    Cta,
+    /// Another algorithm alone. The summary counts these claims separately.
+    Other,
 }
 
 /// A number, and the band in which it supports a claim.
@@ -232,10 +288,6 @@ const fn at_least(what: &'static str, limit: f64) -> Criterion {
     band(what, [limit, f64::INFINITY], Better::Neither)
 }
 
-/// Identifier suffixes and names of both readings of "thin". Claims about thin faces exist once for each.
-pub const READINGS: [(&str, &str); 2] =
-    [("-stretch", "a fixed stretch of 100"), ("-meridians", "16 meridians at any size")];
-
 /// Creates a criterion that is quoted without a limit.
 const fn quoted(what: &'static str) -> Criterion {
     band(what, [f64::NEG_INFINITY, f64::INFINITY], Better::Neither)
@@ -273,10 +325,10 @@ mod tests {
         let claim = CLAIMS.iter().find(|claim| claim.id == "18-range").unwrap();
         let at = |value: f64| Estimate { value, low: 0.99 * value, high: 1.01 * value };
         for (values, expected) in [
-            ([10.0, 2.0], Verdict::Holds),
-            ([5.0, 2.0], Verdict::Better),
-            ([5.0, 2.5], Verdict::Undecided),
-            ([20.0, 1.0], Verdict::Fails),
+            ([10.0, 2.0, 9.0, 9.0], Verdict::Holds),
+            ([5.0, 2.0, 9.0, 9.0], Verdict::Better),
+            ([5.0, 2.5, 9.0, 9.0], Verdict::Undecided),
+            ([20.0, 1.0, 9.0, 9.0], Verdict::Fails),
         ] {
             assert_eq!(claim.judge(&values.map(at)), expected, "{values:?}");
         }
@@ -286,6 +338,7 @@ mod tests {
     fn claims_have_unique_ids_and_valid_bands() {
         for (k, claim) in CLAIMS.iter().enumerate() {
             assert!(claim.statement.ends_with('.'), "{}", claim.id);
+            assert!(k == 0 || CLAIMS[k - 1].theme <= claim.theme, "{}", claim.id);
             assert!(claim.criteria.iter().any(Criterion::is_judged), "{}", claim.id);
             assert!(CLAIMS[..k].iter().all(|other| other.id != claim.id), "{} twice", claim.id);
             for criterion in claim.criteria {

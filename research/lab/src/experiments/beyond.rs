@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use colltrans::ConvexPolyhedron;
 
-use super::rivals::WHO;
+use super::rivals::{CTA, EGJK, PQP, WHO};
 use super::{
-    Coherence, Gathered, Race, Results, against_size, grouped_digits, in_passes, new_axis,
+    Coherence, Gathered, Race, Results, Unit, against_size, grouped_digits, in_passes, new_axis,
     new_series, time_text,
 };
 use crate::Experiment;
@@ -72,9 +72,12 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let parts = measured.split_off(KINDS.len() * sizes.len());
     let rows: Vec<_> = measured.chunks(sizes.len()).collect();
     let ratios = KINDS.iter().zip(&rows).flat_map(|(kind, of_kind)| {
-        [1, 3].map(|who| {
+        [EGJK, PQP].map(|who| {
             let point = |m: &Measured| {
-                Point::median(m.colliding.vertices(), &m.colliding.ratios(who, 0).values())
+                Point::median(
+                    m.colliding.vertices(),
+                    &m.colliding.ratios(who, CTA, Unit::Time).values(),
+                )
             };
             new_series(
                 format!("{}, {}", WHO[who].name(), kind.name()),
@@ -133,7 +136,7 @@ fn times_table<'m>(id: &str, title: &str, rows: impl Iterator<Item = &'m Measure
             short(mean(&m.colliding.steps(0).values())),
             short(median(&m.passing.times(0)) / usual),
         ];
-        let ratio = |who: usize| short(median(&m.colliding.ratios(who, 0).values()));
+        let ratio = |who: usize| short(median(&m.colliding.ratios(who, CTA, Unit::Time).values()));
         cells.extend(rivals.clone().map(ratio));
         let wrong = |r: &Results| (0..WHO.len()).map(|who| r.contradictions(who)).sum::<usize>();
         cells.push((wrong(&m.colliding) + wrong(&m.passing)).to_string());

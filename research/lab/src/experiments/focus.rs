@@ -129,7 +129,7 @@ fn floor_claim(all: &Sequences) -> Claim {
     };
     let details = format!(
         "At a change of 1 %: {} %. Of the hybrid, to a gap of {PAPER_GAP}: {} % at 0.25 %, {} % at 1 %. \
-         \"Several\" is taken as a tenth or more.",
+         \"Several\" is taken as a quarter or more.",
         share(0, END),
         share(1, HYBRID),
         share(0, HYBRID)
@@ -319,7 +319,7 @@ fn regularity_claim(measured: &[At]) -> Claim {
 fn single_step_claim(measured: &[At]) -> Claim {
     let [cta, hybrid] = REGION.map(|who| of_sizes(measured, who, |means| means[0], mean));
     let details = format!(
-        "Up to 1.5 is taken as very close to 1. The numbers are in the claim before. Of the hybrid: {hybrid}."
+        "Up to 1.25 is taken as very close to 1. The numbers are in the claim before. Of the hybrid: {hybrid}."
     );
     judged("14-one", vec![cta], details, || {
         Reason::Sentence.because(format!(

@@ -2,10 +2,9 @@
 
 use colltrans::cta;
 use colltrans::observe::Clock;
-use colltrans_baselines::egjk::SupportSearch;
 
 use super::{
-    Coherence, Race, Results, against_size, by_kind_and_size, grouped_digits, median,
+    Coherence, Race, Results, Unit, against_size, by_kind_and_size, grouped_digits, median,
     median_of_medians, new_axis, new_series, reference_curve, sample_medians, time_text,
 };
 use crate::Experiment;
@@ -25,18 +24,20 @@ pub(super) const FIGURE_18: Experiment = Experiment {
     run,
 };
 
-const WHO: [Who; 5] = [
+const WHO: [Who; 6] = [
     Who::CtaRegion(cta::Region::Automatic, Until::End),
-    Who::Egjk(SupportSearch::Climbing),
+    Who::EgjkTracked,
     Who::CtaRegion(cta::Region::Automatic, Until::Near),
     Who::Tracker,
     Who::CtaCold(cta::Region::Automatic),
+    Who::VClip,
 ];
 const REGION: usize = 0;
 const EGJK: usize = 1;
 const HYBRID: usize = 2;
 const TRACKER: usize = 3;
 const COLD: usize = 4;
+const VCLIP: usize = 5;
 
 /// Changes from query to query as in the paper, in diameters.
 const DELTAS: [f64; 4] = [0.01, 0.005, 0.002_5, 0.001_3];
@@ -54,8 +55,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
         favourable_claim(&balanced),
         falls_with_change(&balanced),
         falls_with_size(&balanced),
-        faces_claim("18-faces-stretch", &balanced, &stretch),
-        faces_claim("18-faces-meridians", &balanced, &meridians),
+        faces_claim(&balanced, &meridians, &stretch),
     ];
     let figures = vec![ratio_figure(&balanced, [&stretch, &meridians])];
     Finding { figures, tables: vec![phase_table(plan)], claims }
@@ -79,69 +79,98 @@ fn measure_sequences(plan: &Plan, kind: Kind, n: usize, delta: f64, pass: u32) -
 }
 
 impl Raced {
-    /// Returns the samples of `time(who) / time(EGJK)` for all sizes and changes.
-    fn ratios(&self, who: usize) -> Vec<Sample> {
-        self.0.iter().flatten().map(|r| r.ratios(who, EGJK)).collect()
+    /// Returns the samples of `cost(who) / cost(EGJK)` for all sizes and changes.
+    fn ratios(&self, who: usize, unit: Unit) -> Vec<Sample> {
+        self.0.iter().flatten().map(|r| r.ratios(who, EGJK, unit)).collect()
     }
 
-    fn points(&self, who: usize, change: usize) -> Vec<Point> {
+    fn points(&self, who: usize, change: usize, unit: Unit) -> Vec<Point> {
         let point = |at: &[Results; DELTAS.len()]| {
             let results = &at[change];
-            Point::median(results.vertices(), &results.ratios(who, EGJK).values())
+            Point::median(results.vertices(), &results.ratios(who, EGJK, unit).values())
         };
         self.0.iter().map(point).collect()
     }
 
     /// Formats median ratios by change and size.
-    fn text(&self, who: usize) -> String {
+    fn text(&self, who: usize, unit: Unit) -> String {
         let at = |k: usize| {
             let ratios: Vec<_> =
-                self.points(who, k).iter().map(|p| format!("{:.2}", p.y)).collect();
+                self.points(who, k, unit).iter().map(|p| format!("{:.2}", p.y)).collect();
             format!("{} at {} %", ratios.join(", "), 100.0 * DELTAS[k])
         };
         (0..DELTAS.len()).map(at).collect::<Vec<_>>().join("; ")
     }
 
-    /// Explains the result by iterations and times at the middle size, for the largest and the smallest
-    /// change.
+    /// Explains the range by the costs at the middle size, for the largest and the smallest change.
     fn why(&self) -> Why {
         let middle = &self.0[self.0.len() / 2];
         let at = |r: &Results| {
-            let each = |who: usize| {
-                let (time, iterations) = (time_text(median(&r.times(who))), r.iterations(who));
-                format!("{} {time} and {iterations:.1} iterations", WHO[who].name())
-            };
+            let each = |who: usize| format!("{} {}", WHO[who].name(), r.cost_text(who));
             let steps = mean(&r.steps(REGION).values());
             format!(
-                "{} in {steps:.1} planar problems, {}, {}",
+                "{} with {steps:.1} planar problems, {}, {}",
                 each(REGION),
                 each(EGJK),
                 each(TRACKER)
             )
         };
         Reason::Implementation.because(format!(
-            "At {} vertices: at a change of 1 % {}; at 0.13 % {}. Every query with region focus pays for frames, a \
-             planar problem or more, the exit test, one portal and a certificate, which the paper's did not make: \
-             [the page of its time](paper.md#what-an-incremental-query-costs-at-least).",
+            "At {} vertices and a change of 1 %: {}; at 0.13 %: {}. Each query with region focus includes frames, at least \
+             one planar problem, the exit test, one portal and a certificate; the paper's had no certificate: \
+             [minimum of an incremental query](paper.md#what-an-incremental-query-costs-at-least).",
             grouped_digits(middle[0].vertices()),
             at(&middle[0]),
             at(&middle[DELTAS.len() - 1])
+        ))
+    }
+
+    /// Explains the trend with the size: planar problems and vertices that EGJK climbs over, in the smallest and the
+    /// largest bodies.
+    fn why_size(&self) -> Why {
+        let at = |at: &[Results; DELTAS.len()]| {
+            let steps = |k: usize| mean(&at[k].steps(REGION).values());
+            format!(
+                "{} vertices: {:.2} planar problems at 1 %, {:.2} at 0.13 %, EGJK {:.1} and {:.1} iterations",
+                grouped_digits(at[0].vertices()),
+                steps(0),
+                steps(DELTAS.len() - 1),
+                at[0].iterations(EGJK),
+                at[DELTAS.len() - 1].iterations(EGJK)
+            )
+        };
+        Reason::Sentence.because(format!(
+            "Cells shrink as bodies grow, so that the same change leads further away from the last cell. {}; {}. The paper \
+             plots four curves and states the trend without numbers.",
+            at(&self.0[0]),
+            at(&self.0[self.0.len() - 1])
         ))
     }
 }
 
 fn ratio_figure(balanced: &Raced, thin: [&Raced; 2]) -> Figure {
     let mut lines: Vec<_> = (0..DELTAS.len())
-        .map(|k| new_series(format!("CTA, {} % D", 100.0 * DELTAS[k]), balanced.points(REGION, k)))
+        .map(|k| {
+            new_series(
+                format!("CTA, {} % D", 100.0 * DELTAS[k]),
+                balanced.points(REGION, k, Unit::Time),
+            )
+        })
         .collect();
-    lines.push(new_series("CTA, 1 % D, thin (stretch of 100)", thin[0].points(REGION, 0)));
-    lines.push(new_series("CTA, 1 % D, thin (16 meridians)", thin[1].points(REGION, 0)));
-    lines.push(new_series("CTA, 1 % D, planar problems cold", balanced.points(COLD, 0)));
-    lines.push(new_series("hybrid, 1 % D", balanced.points(HYBRID, 0)));
-    lines.push(new_series("feature focus, 1 % D", balanced.points(TRACKER, 0)));
+    lines.push(new_series(
+        "CTA, 1 % D, thin (stretch of 100)",
+        thin[0].points(REGION, 0, Unit::Time),
+    ));
+    lines
+        .push(new_series("CTA, 1 % D, thin (16 meridians)", thin[1].points(REGION, 0, Unit::Time)));
+    lines
+        .push(new_series("CTA, 1 % D, planar problems cold", balanced.points(COLD, 0, Unit::Time)));
+    lines.push(new_series("hybrid, 1 % D", balanced.points(HYBRID, 0, Unit::Time)));
+    lines.push(new_series("V-Clip, 1 % D", balanced.points(VCLIP, 0, Unit::Time)));
+    lines.push(new_series("feature focus, 1 % D", balanced.points(TRACKER, 0, Unit::Time)));
     let mut figure = against_size(
         "figure-18",
-        "Incremental queries: time over the time of EGJK (climbing), median and quartiles",
+        "Incremental queries: time over the time of EGJK, median and quartiles",
         new_axis("time / time(EGJK)", true),
         lines,
     );
@@ -200,54 +229,87 @@ fn phase_medians(plan: &Plan, n: usize) -> Vec<(&'static str, f64)> {
     phases.into_iter().map(|(name, all)| (name, median(&all))).collect()
 }
 
+/// Returns the largest of the medians.
+fn largest(samples: &[Vec<f64>]) -> f64 {
+    sample_medians(samples).into_iter().fold(0.0, f64::max)
+}
+
+/// Returns the smallest of the medians.
+fn smallest(samples: &[Vec<f64>]) -> f64 {
+    sample_medians(samples).into_iter().fold(f64::INFINITY, f64::min)
+}
+
 fn range_claim(raced: &Raced) -> Claim {
-    let ratios = raced.ratios(REGION);
-    let most = estimate(&ratios, |s| sample_medians(s).into_iter().fold(0.0, f64::max));
-    let least = estimate(&ratios, |s| sample_medians(s).into_iter().fold(f64::INFINITY, f64::min));
+    let [counts, times] = [Unit::Instructions, Unit::Time].map(|unit| raced.ratios(REGION, unit));
+    let measured = vec![
+        estimate(&counts, largest),
+        estimate(&counts, smallest),
+        estimate(&times, largest),
+        estimate(&times, smallest),
+    ];
     let details = format!(
-        "Medians from the smallest to the largest bodies: {}. Of the hybrid: {}. With planar problems cold: {}. \
-         Feature focus instead of region focus: {}.",
-        raced.text(REGION),
-        raced.text(HYBRID),
-        raced.text(COLD),
-        raced.text(TRACKER)
+        "Medians from the smallest to the largest bodies, instructions: {}. Times: {}. Times of the hybrid: {}; with \
+         planar problems cold: {}; of feature focus: {}; of V-Clip: {}.",
+        raced.text(REGION, Unit::Instructions),
+        raced.text(REGION, Unit::Time),
+        raced.text(HYBRID, Unit::Time),
+        raced.text(COLD, Unit::Time),
+        raced.text(TRACKER, Unit::Time),
+        raced.text(VCLIP, Unit::Time)
     );
-    judged("18-range", vec![most, least], details, || raced.why())
+    judged("18-range", measured, details, || raced.why())
 }
 
 fn favourable_claim(raced: &Raced) -> Claim {
-    let fold = |s: &[Vec<f64>]| sample_medians(s).into_iter().fold(f64::INFINITY, f64::min);
-    let least = estimate(&raced.ratios(REGION), fold);
-    let tracker = estimate(&raced.ratios(TRACKER), fold);
-    judged("18-egjk", vec![least], format!("With feature focus: {tracker}."), || raced.why())
+    let least = |who: usize, unit: Unit| estimate(&raced.ratios(who, unit), smallest);
+    let details = format!("Of the times of feature focus: {}.", least(TRACKER, Unit::Time));
+    let measured = vec![least(REGION, Unit::Instructions), least(REGION, Unit::Time)];
+    judged("18-egjk", measured, details, || raced.why())
 }
 
 fn falls_with_change(raced: &Raced) -> Claim {
     let last = DELTAS.len() - 1;
-    let measured = estimate(&raced.ratios(REGION), |s| {
-        let fall = |at: &[Vec<f64>]| median(&at[last]) / median(&at[0]);
-        median(&s.chunks(DELTAS.len()).map(fall).collect::<Vec<_>>())
-    });
-    judged("18-change", vec![measured], String::new(), || raced.why())
+    let fall_of = |unit: Unit| {
+        estimate(&raced.ratios(REGION, unit), |s| {
+            let fall = |at: &[Vec<f64>]| median(&at[last]) / median(&at[0]);
+            median(&s.chunks(DELTAS.len()).map(fall).collect::<Vec<_>>())
+        })
+    };
+    let measured = vec![fall_of(Unit::Instructions), fall_of(Unit::Time)];
+    judged("18-change", measured, String::new(), || raced.why())
 }
 
 fn falls_with_size(raced: &Raced) -> Claim {
-    let measured = estimate(&raced.ratios(REGION), |s| {
-        let (first, last) = (&s[..DELTAS.len()], &s[s.len() - DELTAS.len()..]);
-        let fall: Vec<_> = last.iter().zip(first).map(|(l, f)| median(l) / median(f)).collect();
-        median(&fall)
-    });
-    judged("18-size", vec![measured], String::new(), || raced.why())
+    let fall_of = |unit: Unit| {
+        estimate(&raced.ratios(REGION, unit), |s| {
+            let (first, last) = (&s[..DELTAS.len()], &s[s.len() - DELTAS.len()..]);
+            let fall: Vec<_> = last.iter().zip(first).map(|(l, f)| median(l) / median(f)).collect();
+            median(&fall)
+        })
+    };
+    let measured = vec![fall_of(Unit::Instructions), fall_of(Unit::Time)];
+    judged("18-size", measured, String::new(), || raced.why_size())
 }
 
-fn faces_claim(id: &str, balanced: &Raced, thin: &Raced) -> Claim {
-    let samples = [thin.ratios(REGION), balanced.ratios(REGION)].concat();
-    let measured = estimate(&samples, |s| {
-        let (thin, balanced) = s.split_at(s.len() / 2);
-        median_of_medians(thin) / median_of_medians(balanced)
-    });
-    let details = format!("In the middle of all sizes and changes. Thin: {}.", thin.text(REGION));
-    judged(id, vec![measured], details, || {
+/// Judges thin faces with 16 meridians, and quotes the number with a fixed stretch.
+fn faces_claim(balanced: &Raced, meridians: &Raced, stretch: &Raced) -> Claim {
+    let ratio_of = |thin: &Raced, unit: Unit| {
+        let samples = [thin.ratios(REGION, unit), balanced.ratios(REGION, unit)].concat();
+        estimate(&samples, |s| {
+            let (thin, balanced) = s.split_at(s.len() / 2);
+            median_of_medians(thin) / median_of_medians(balanced)
+        })
+    };
+    let measured = vec![
+        ratio_of(meridians, Unit::Instructions),
+        ratio_of(meridians, Unit::Time),
+        ratio_of(stretch, Unit::Instructions),
+    ];
+    let details = format!(
+        "In the middle of all sizes and changes. Instructions on thin faces: {}.",
+        meridians.text(REGION, Unit::Instructions)
+    );
+    judged("18-faces", measured, details, || {
         let at = |raced: &Raced| {
             let at = &raced.0[raced.0.len() / 2][DELTAS.len() - 1];
             [at.iterations(REGION), at.iterations(EGJK)]
@@ -255,10 +317,10 @@ fn faces_claim(id: &str, balanced: &Raced, thin: &Raced) -> Claim {
                 .join(" and ")
         };
         Reason::Sentence.because(format!(
-            "It does not say how thin. Iterations of all loops of CTA and of EGJK in bodies of the middle size, at \
-             a change of 0.13 %: {} on balanced and {} on thin faces.",
+            "The paper does not state how thin the faces are. Iterations of CTA and of EGJK in bodies of the middle size, \
+             at a change of 0.13 %: {} on balanced faces, {} on thin ones.",
             at(balanced),
-            at(thin)
+            at(meridians)
         ))
     })
 }

@@ -261,7 +261,7 @@ fn neighbourhood_claim(seen: &[Seen]) -> Claim {
     let shares = all.iter().map(|one| 100.0 * mean(&one.values()));
     let [least, most] = [f64::min, f64::max].map(|f| shares.clone().reduce(f).unwrap_or(f64::NAN));
     let details = format!(
-        "The mean over all sizes and changes; from {} to {} %. 90 % is taken as a high probability.",
+        "The mean over all sizes and changes; from {} to {} %. 75 % is taken as a high probability.",
         short(least),
         short(most)
     );

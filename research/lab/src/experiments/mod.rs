@@ -11,6 +11,7 @@ mod focus;
 mod growth;
 mod incremental;
 mod minimisation;
+mod neighbours;
 mod profile;
 mod rivals;
 mod separation;
@@ -34,7 +35,7 @@ pub fn experiments() -> &'static [Experiment] {
 }
 
 /// All experiments in the paper's order.
-const EXPERIMENTS: [Experiment; 12] = [
+const EXPERIMENTS: [Experiment; 13] = [
     minimisation::SECTION_3,
     growth::FIGURE_11,
     profile::TABLE_1,
@@ -47,6 +48,7 @@ const EXPERIMENTS: [Experiment; 12] = [
     incremental::FIGURE_18,
     variable::FIGURE_19,
     beyond::BEYOND,
+    neighbours::CASTS,
 ];
 
 /// Parameters that depend on the scale.
@@ -162,8 +164,29 @@ enum Coherence {
 struct Measured {
     nanoseconds: f64,
     work: Work,
+    /// Estimate from the counts ([`Who::instructions`]).
+    instructions: f64,
     /// Group for the bootstrap.
     group: Group,
+}
+
+/// Unit of the cost of a query.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Unit {
+    /// Instructions, estimated from counts. Verdicts are by these, because they do not depend on the machine.
+    Instructions,
+    /// Nanoseconds.
+    Time,
+}
+
+impl Unit {
+    /// Returns the cost of a query.
+    fn of(self, query: &Measured) -> f64 {
+        match self {
+            Self::Instructions => query.instructions,
+            Self::Time => query.nanoseconds,
+        }
+    }
 }
 
 /// Solvers and settings of a race.
@@ -235,7 +258,7 @@ impl Race<'_> {
                 for k in 0..field.len() {
                     let who = (turn + k) % field.len();
                     let lane = &mut results.lanes[who];
-                    self.measure_block(field[who].as_mut(), &block, first, lane);
+                    self.measure_block((field[who].as_mut(), self.who[who]), &block, first, lane);
                 }
             }
         }
@@ -251,27 +274,28 @@ impl Race<'_> {
     /// Measures one solver on a block.
     fn measure_block(
         &self,
-        who: &mut dyn Algorithm,
+        (solver, who): (&mut dyn Algorithm, Who),
         block: &[Setting],
         first: Group,
         lane: &mut Vec<Measured>,
     ) {
         let stopwatch = Stopwatch::new();
         let scratch = self.coherence == Coherence::Scratch;
-        who.forget();
+        solver.forget();
         if scratch && let Some(first) = block.first() {
             // A warm-up loads code and tables that the previous solver displaced from the caches.
-            who.ask(first);
+            solver.ask(first);
         }
         for (k, setting) in block.iter().enumerate() {
             if scratch {
-                who.forget();
+                solver.forget();
             }
-            let (work, nanoseconds) = stopwatch.time(|| who.ask(setting));
+            let (work, nanoseconds) = stopwatch.time(|| solver.ask(setting));
             if scratch || k > 0 {
                 let number = if scratch { first.number + k as u32 } else { first.number };
                 let group = Group { number, ..first };
-                lane.push(Measured { nanoseconds, work, group });
+                let instructions = who.instructions(work);
+                lane.push(Measured { nanoseconds, work, instructions, group });
             }
         }
     }
@@ -303,15 +327,27 @@ impl Results {
         mean(&self.sample(who, |m| f64::from(m.work.iterations)).values())
     }
 
-    /// Returns the times of a solver in nanoseconds, by group.
-    fn time_sample(&self, who: usize) -> Sample {
-        self.sample(who, |m| m.nanoseconds)
+    /// Returns for each query the ratio of the costs of two solvers.
+    fn ratios(&self, who: usize, other: usize, unit: Unit) -> Sample {
+        let pairs = self.lanes[who].iter().zip(&self.lanes[other]);
+        Sample::of(pairs.map(|(a, b)| (a.group, unit.of(a) / unit.of(b))))
     }
 
-    /// Returns for each query the ratio of the times of two solvers.
-    fn ratios(&self, who: usize, other: usize) -> Sample {
-        let pairs = self.lanes[who].iter().zip(&self.lanes[other]);
-        Sample::of(pairs.map(|(a, b)| (a.group, a.nanoseconds / b.nanoseconds)))
+    /// Returns the costs of a solver, by group.
+    fn costs(&self, who: usize, unit: Unit) -> Sample {
+        self.sample(who, |m| unit.of(m))
+    }
+
+    /// Formats the median instructions and the median time of a solver, with their ratio.
+    fn cost_text(&self, who: usize) -> String {
+        let [time, count] =
+            [Unit::Time, Unit::Instructions].map(|unit| median(&self.costs(who, unit).values()));
+        format!(
+            "{} instructions in {} ({:.1} a ns)",
+            count_text(count),
+            time_text(time),
+            count / time
+        )
     }
 
     /// Counts the queries in which a solver failed or contradicted another one.
@@ -338,6 +374,9 @@ impl Answer {
             (Self::Meet(a), Self::Meet(b)) | (Self::Distance(a), Self::Distance(b)) => apart(a, b),
             (Self::Meet(_) | Self::MeetNearly, Self::Pass)
             | (Self::Pass, Self::Meet(_) | Self::MeetNearly) => true,
+            (Self::Overlap(a), Self::Overlap(b)) => a != b,
+            (Self::Overlap(overlaps), Self::Distance(distance))
+            | (Self::Distance(distance), Self::Overlap(overlaps)) => overlaps != (distance == 0.0),
             _ => false,
         }
     }
@@ -383,6 +422,15 @@ fn fitted_reference(name: &str, points: &[Point], curve: impl Fn(f64) -> f64) ->
     let logs: f64 = points.iter().map(|p| (p.y / curve(p.x)).ln()).sum();
     let scale = (logs / points.len() as f64).exp();
     reference_curve(name, points.iter().map(|p| p.x), |x| scale * curve(x))
+}
+
+/// Formats a large count.
+fn count_text(count: f64) -> String {
+    if count < 1e6 {
+        format!("{:.0} thousand", count / 1e3)
+    } else {
+        format!("{:.1} million", count / 1e6)
+    }
 }
 
 /// Formats a time.

@@ -1,8 +1,8 @@
 //! Figure 12: the cost of detecting that bodies pass each other.
 
 use super::{
-    Coherence, Gathered, Race, Results, against_size, grouped_digits, in_passes, listed_values,
-    median, new_axis, new_series, reference_curve, time_text,
+    Coherence, Gathered, Race, Results, Unit, against_size, grouped_digits, in_passes,
+    listed_values, median, new_axis, new_series, reference_curve, time_text,
 };
 use crate::Experiment;
 use crate::claims::{Claim, Reason, Why, judged};
@@ -101,9 +101,9 @@ fn time_ratios(all: &[Measured], who: usize, gap: usize) -> Vec<Point> {
 
 /// Judges the ratio of medians, as the mean over all sizes.
 fn separation_claim(all: &[Measured], id: &str, gap: usize) -> Claim {
-    let of = |who: usize| {
-        let passing = all.iter().map(|m| m.passing[gap].time_sample(who));
-        let colliding = all.iter().map(|m| m.colliding.time_sample(who));
+    let of = |who: usize, unit: Unit| {
+        let passing = all.iter().map(|m| m.passing[gap].costs(who, unit));
+        let colliding = all.iter().map(|m| m.colliding.costs(who, unit));
         let samples: Vec<Sample> = passing.chain(colliding).collect();
         estimate(&samples, |s| {
             let (passing, colliding) = s.split_at(s.len() / 2);
@@ -118,13 +118,14 @@ fn separation_claim(all: &[Measured], id: &str, gap: usize) -> Claim {
         })
         .collect();
     let details = format!(
-        "The mean over all sizes; by size {}. All distances: {}. Of the hybrid {}: its collisions end at a gap of \
-         {PAPER_GAP}, its separations do not.",
+        "The means over all sizes. Ratios of times by size: {}; of all distances: {}. Of the times of the hybrid {}: its \
+         collisions end at a gap of {PAPER_GAP}, its separations do not.",
         listed_values(&time_ratios(all, CTA, gap), 2),
         others.join(", "),
-        of(HYBRID)
+        of(HYBRID, Unit::Time)
     );
-    judged(id, vec![of(CTA)], details, || explanation(all))
+    let measured = vec![of(CTA, Unit::Instructions), of(CTA, Unit::Time)];
+    judged(id, measured, details, || explanation(all))
 }
 
 /// Explains the result by the planar problems at the middle size.

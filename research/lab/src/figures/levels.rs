@@ -289,7 +289,7 @@ pub(super) fn focus_figure(scene: &Scene, run: &Run, half: f64) -> String {
 }
 
 /// Returns the centroid of a polygon.
-fn centroid(polygon: &[DVec2]) -> DVec2 {
+pub(super) fn centroid(polygon: &[DVec2]) -> DVec2 {
     let (first, mut area, mut moment) = (polygon[0], 0.0, DVec2::ZERO);
     for pair in polygon[1..].windows(2) {
         let (u, v) = (pair[0] - first, pair[1] - first);

@@ -2,10 +2,12 @@
 //! to an observer. Figure 7 is the pseudocode ([line by line](../../../docs/paper.md)).
 //!
 //! Modules: `setting` (cubes, and a run of the algorithm), `planar` (two sections and their contact by brute
-//! force), `mark` (all cells), `levels` and `instances` (pictures) on a `sheet`.
+//! force), `mark` (all cells), `levels` and `instances` (pictures) on a `sheet`. `literal` counts the steps of the
+//! pseudocode with the paper's cuts and cells, also for other bodies.
 
 mod instances;
 mod levels;
+pub(crate) mod literal;
 mod mark;
 mod planar;
 mod setting;

@@ -4,6 +4,8 @@
 //! As in the library, `a`, `b` are the section axes, `x`, `y` the levels. Shadow coordinates are those of a view
 //! along `d`: `g` to the right, `h` upwards.
 
+use std::collections::BTreeMap;
+
 use colltrans::observe::{SectionContact, Sections};
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
@@ -32,12 +34,15 @@ impl Placed {
             faces.push((normal, normal.dot(vertices[corners[0]]), corners));
         }
         let mut edges: Vec<([usize; 2], [usize; 2])> = Vec::new();
+        let mut indices: BTreeMap<[usize; 2], usize> = BTreeMap::new();
         for (face, (.., corners)) in faces.iter().enumerate() {
             for (k, &from) in corners.iter().enumerate() {
                 let to = corners[(k + 1) % corners.len()];
-                match edges.iter_mut().find(|(ends, _)| *ends == [to, from]) {
-                    Some((_, sides)) => sides[1] = face,
-                    None => edges.push(([from, to], [face, face])),
+                if let Some(&edge) = indices.get(&[to, from]) {
+                    edges[edge].1[1] = face;
+                } else {
+                    indices.insert([from, to], edges.len());
+                    edges.push(([from, to], [face, face]));
                 }
             }
         }
@@ -110,6 +115,14 @@ impl View {
         let bodies = [0, 1].map(|body| Placed::new(setting, body));
         let origins = setting.poses.map(|pose| pose.translation());
         Self { bodies, direction: d, right: d.cross(up), up, axes: told.axes, origins }
+    }
+
+    /// Returns the levels of all vertices of a body, ascending.
+    pub(super) fn vertex_levels(&self, body: usize) -> Vec<f64> {
+        let level = |v: &DVec3| self.axes[body].dot(*v - self.origins[body]);
+        let mut levels: Vec<f64> = self.bodies[body].vertices.iter().map(level).collect();
+        levels.sort_by(f64::total_cmp);
+        levels
     }
 
     /// Projects a point along the direction.

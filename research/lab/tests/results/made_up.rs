@@ -1,7 +1,7 @@
 //! Artificial findings.
 
 use colltrans_lab::Experiment;
-use colltrans_lab::claims::{Better, Claim, Criterion, PaperClaim, Reason, Why};
+use colltrans_lab::claims::{Better, Claim, Criterion, PaperClaim, Reason, Subject, Theme, Why};
 use colltrans_lab::finding::{Axis, Figure, Finding, Point, Series, Table};
 use colltrans_lab::plan::{Plan, Progress};
 use colltrans_lab::statistics::Estimate;
@@ -39,6 +39,8 @@ static GROWS: PaperClaim = PaperClaim {
     statement: "Time grows like log n & not faster.",
     paper: "<log n>",
     place: "V-A, figure 12",
+    theme: Theme::Scratch,
+    subject: Subject::Cta,
     criteria: &[Criterion { what: "exponent", low: 0.0, high: 0.2, better: Better::Neither }],
 };
 
@@ -47,6 +49,8 @@ static FASTER: PaperClaim = PaperClaim {
     statement: "It is faster than the others.",
     paper: "half",
     place: "V-A, figure 12",
+    theme: Theme::Scratch,
+    subject: Subject::Cta,
     criteria: &[Criterion { what: "ratio", low: 0.4, high: 0.6, better: Better::Less }],
 };
 

@@ -58,7 +58,8 @@ fn folder_contains_all_files() {
     let faster = claims.iter().find(|claim| claim["id"] == "12-faster").unwrap();
     let expected = serde_json::json!({
         "id": "12-faster", "statement": "It is faster than the others.", "paper": "half",
-        "place": "V-A, figure 12", "verdict": "does not hold", "why": faster["why"],
+        "place": "V-A, figure 12", "theme": "queries from scratch", "is_about_cta": true,
+        "verdict": "does not hold", "why": faster["why"],
         "reason": "today's machine",
         "measured": [{ "what": "ratio", "value": 2.0, "low": 1.5, "high": 2.5, "judged": true }],
     });
@@ -88,7 +89,7 @@ fn summary_lists_claims() {
         text.contains("\n  does not hold          12-faster: It is faster than the others."),
         "{text}"
     );
-    assert!(text.lines().last().unwrap().starts_with("4 of 8 claims hold, "), "{text}");
+    assert!(text.lines().last().unwrap().starts_with("4 of 8 claims about CTA hold, "), "{text}");
 }
 
 #[test]

@@ -1,11 +1,16 @@
 //! The compared solvers: every algorithm behind one trait.
 
+mod cost;
+
 use colltrans::observe::Observer;
 use colltrans::{Focus, Options, Outcome, QueryError, Solver, Steps, Tracker, cta};
 use colltrans_baselines::egjk::{Egjk, SupportSearch};
+use colltrans_baselines::growth::GrowthDistance;
 use colltrans_baselines::hwalk::HWalk;
+use colltrans_baselines::mpr::Mpr;
 use colltrans_baselines::pqp::Pqp;
 use colltrans_baselines::raycast::{RayCast, RayCastAnswer};
+use colltrans_baselines::vclip::VClip;
 
 use crate::settings::Setting;
 use crate::shapes::Bodies;
@@ -18,22 +23,36 @@ pub(crate) enum Who {
     /// The paper's incremental algorithm, starting in the region of the last solution. A fixed half side is
     /// in diameters.
     CtaRegion(cta::Region, Until),
-    /// The paper's incremental algorithm with each planar problem solved from scratch, as its section V-F
-    /// describes.
+    /// The paper's algorithm without coherence, with each planar problem solved from scratch, as its section
+    /// V-F describes.
+    CtaColdScratch,
+    /// The paper's incremental algorithm with each planar problem solved from scratch.
     CtaCold(cta::Region),
+    /// The minimisation without coherence with cuts through the centroid, as in the earlier method.
+    CtaCentroid,
     /// The default of `colltrans` for single queries: portal refinement.
     Portal,
     /// The default of `colltrans` for sequences of queries: feature focus.
     Tracker,
-    /// Distance by enhanced GJK.
+    /// Distance by enhanced GJK, from scratch.
     Egjk(SupportSearch),
+    /// Distance by enhanced GJK in a sequence of queries.
+    EgjkTracked,
     /// Distance by swept sphere trees over triangles.
     Pqp,
     /// Distance by H-Walk with a start layer: the paper's `l`, as a share of the range from the finest to the
     /// coarsest layer.
     HWalk(f64),
+    /// Distance by V-Clip.
+    VClip,
     /// Collision translation by GJK ray cast, to `1e-6` of the size; not exact.
     RayCast,
+    /// Overlap by `colltrans`.
+    Intersects,
+    /// Overlap by Minkowski portal refinement, to `1e-6` of the size; not exact.
+    Mpr,
+    /// Growth distance by cutting planes, to a relative gap of the square root of the machine epsilon.
+    Growth,
 }
 
 /// Stage at which portal refinement replaces the collision translation algorithm (CTA).
@@ -75,6 +94,11 @@ pub(crate) fn centroid_cuts() -> Options {
     cta_options(cta::Options::default().with_cuts(cta::Cuts::Centroid))
 }
 
+/// Returns options of the complete minimisation with each planar problem solved from scratch.
+fn cold_problems() -> Options {
+    cta_options(cta::Options::default().with_starts_cold(true))
+}
+
 /// Answer of a solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Answer {
@@ -86,6 +110,8 @@ pub(crate) enum Answer {
     Pass,
     /// Distance of the bodies.
     Distance(f64),
+    /// Whether the bodies overlap at the start.
+    Overlap(bool),
     /// The solver failed.
     Failed,
 }
@@ -119,14 +145,21 @@ impl Who {
             Self::CtaRegion(_, Until::Near) => "hybrid, region focus".into(),
             Self::CtaRegion(_, Until::End) => "CTA, region focus".into(),
             Self::CtaRegion(_, Until::EndAcrossCells) => "CTA across cells, region focus".into(),
+            Self::CtaColdScratch => "CTA, planar problems cold".into(),
+            Self::CtaCentroid => "cuts through the centroid".into(),
             Self::CtaCold(_) => "CTA, region focus, planar problems cold".into(),
             Self::Portal => "portal refinement".into(),
             Self::Tracker => "feature focus".into(),
-            Self::Egjk(SupportSearch::Climbing) => "EGJK, climbing".into(),
+            Self::Egjk(SupportSearch::FirstVertex) | Self::EgjkTracked => "EGJK".into(),
+            Self::Egjk(SupportSearch::Climbing) => "EGJK, seeds kept".into(),
             Self::Egjk(SupportSearch::Linear) => "EGJK, linear search".into(),
             Self::Pqp => "PQP".into(),
             Self::HWalk(share) => format!("H-Walk, {:.0} % of the layers", 100.0 * share),
+            Self::VClip => "V-Clip".into(),
             Self::RayCast => "GJK ray cast".into(),
+            Self::Intersects => "overlap by portal refinement".into(),
+            Self::Mpr => "MPR".into(),
+            Self::Growth => "growth distance".into(),
         }
     }
 
@@ -139,12 +172,12 @@ impl Who {
             Self::CtaRegion(region, until) => {
                 Box::new(Tracked::in_region(bodies, region, until.options()))
             }
-            Self::CtaCold(region) => {
-                let cold = cta_options(cta::Options::default().with_starts_cold(true));
-                Box::new(Tracked::in_region(bodies, region, cold))
-            }
+            Self::CtaColdScratch => Box::new(Scratch { bodies, options: cold_problems() }),
+            Self::CtaCentroid => Box::new(Scratch { bodies, options: centroid_cuts() }),
+            Self::CtaCold(region) => Box::new(Tracked::in_region(bodies, region, cold_problems())),
             Self::Tracker => Box::new(Tracked::new(bodies, Focus::default(), Options::default())),
             Self::Egjk(search) => Box::new(Egjk::new(moving, fixed).with_support_search(search)),
+            Self::EgjkTracked => Self::Egjk(SupportSearch::FirstVertex).enter(bodies),
             Self::Pqp => {
                 let [moving, fixed] = bodies.soups();
                 Box::new(Pqp::new(moving, fixed))
@@ -155,7 +188,14 @@ impl Who {
                 let layer = (share * coarsest as f64).round() as usize;
                 Box::new(HWalk::new(moving, fixed).with_start_layer(layer))
             }
+            Self::VClip => {
+                let [moving, fixed] = bodies.shells();
+                Box::new(VClip::new(moving, fixed))
+            }
             Self::RayCast => Box::new(RayCast::new(moving, fixed)),
+            Self::Intersects => Box::new(Intersects { bodies }),
+            Self::Mpr => Box::new(Mpr::new(moving, fixed)),
+            Self::Growth => Box::new(GrowthDistance::new(moving, fixed)),
         }
     }
 }
@@ -261,7 +301,7 @@ impl Algorithm for RayCast<'_> {
             RayCastAnswer::Miss { steps } => (Answer::Pass, steps),
             RayCastAnswer::Exhausted { steps, .. } => (Answer::Failed, steps),
         };
-        Work { answer, steps: steps.iterations, iterations: steps.iterations }
+        Work { answer, steps: steps.iterations, iterations: steps.iterations + steps.climbed }
     }
 }
 
@@ -272,8 +312,10 @@ impl Algorithm for Pqp<'_> {
 
     fn ask(&mut self, setting: &Setting) -> Work {
         let found = self.distance(&setting.moving, &setting.fixed);
-        let steps = u32::try_from(found.steps.volume_tests).unwrap_or(u32::MAX);
-        Work { answer: Answer::Distance(found.distance), steps, iterations: steps }
+        let colltrans_baselines::pqp::Steps { volume_tests, triangle_tests } = found.steps;
+        let [steps, iterations] = [volume_tests, volume_tests + triangle_tests]
+            .map(|count| u32::try_from(count).unwrap_or(u32::MAX));
+        Work { answer: Answer::Distance(found.distance), steps, iterations }
     }
 }
 
@@ -286,5 +328,64 @@ impl Algorithm for HWalk<'_> {
         let found = self.distance(&setting.moving, &setting.fixed);
         let colltrans_baselines::hwalk::Steps { pairs, iterations, .. } = found.steps;
         Work { answer: Answer::Distance(found.distance), steps: pairs, iterations }
+    }
+}
+
+impl Algorithm for VClip<'_> {
+    fn forget(&mut self) {
+        self.reset();
+    }
+
+    fn ask(&mut self, setting: &Setting) -> Work {
+        let found = self.distance(&setting.moving, &setting.fixed);
+        let colltrans_baselines::vclip::Steps { pairs, iterations, .. } = found.steps;
+        Work { answer: Answer::Distance(found.distance), steps: pairs, iterations }
+    }
+}
+
+/// Overlap queries without coherence.
+struct Intersects<'a> {
+    bodies: &'a Bodies,
+}
+
+impl Algorithm for Intersects<'_> {
+    fn forget(&mut self) {}
+
+    fn ask(&mut self, setting: &Setting) -> Work {
+        let found =
+            setting.cast(self.bodies, &Options::default()).and_then(|cast| cast.intersects());
+        let Ok(found) = found else {
+            return Work { answer: Answer::Failed, steps: 0, iterations: 0 };
+        };
+        let Steps { supports, pivots, iterations, .. } = found.evidence.outcome.steps();
+        let answer = Answer::Overlap(found.meets);
+        Work { answer, steps: pivots, iterations: iterations + pivots + supports }
+    }
+}
+
+impl Algorithm for Mpr<'_> {
+    fn forget(&mut self) {
+        self.reset();
+    }
+
+    fn ask(&mut self, setting: &Setting) -> Work {
+        let found = self.overlap(&setting.moving, &setting.fixed);
+        let colltrans_baselines::mpr::Steps { portals, climbed } = found.steps;
+        let answer = found.overlaps.map_or(Answer::Failed, Answer::Overlap);
+        Work { answer, steps: portals, iterations: portals + climbed }
+    }
+}
+
+impl Algorithm for GrowthDistance<'_> {
+    fn forget(&mut self) {
+        self.reset();
+    }
+
+    fn ask(&mut self, setting: &Setting) -> Work {
+        let found = self.distance(&setting.moving, &setting.fixed);
+        let colltrans_baselines::growth::Steps { planes, climbed } = found.steps;
+        let answer =
+            if found.is_converged { Answer::Overlap(found.upper <= 1.0) } else { Answer::Failed };
+        Work { answer, steps: planes, iterations: planes + climbed }
     }
 }

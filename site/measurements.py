@@ -385,10 +385,12 @@ def intervals_overlap(claim: Row, other: Row) -> bool:
 
 
 def readings(run: Row) -> str:
-    """Returns the table of the claims about thin faces, under both readings of "thin"."""
+    """Returns the table of the claims that a run judges under both readings of "thin"."""
     first, second = READINGS
     named = by_name(run)
     names = [name.removesuffix(first) for name in named if name.endswith(first)]
+    if not names:
+        return ""
     pairs = {name: [named[name + first], named[name + second]] for name in names}
     one, other = READINGS.values()
     text = (

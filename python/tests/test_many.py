@@ -239,3 +239,39 @@ def test_rows_beside_many_of_one_pair_keep_outcome_and_proof_but_not_the_margin(
     few = cast_many(box, box, [0, 0, -1], moving_pose=starts[apart][:9])
     first = cast(box, box, [0, 0, -1], moving_pose=starts[apart][0])
     assert isinstance(first, Separated) and few.margin[0] == first.margin
+
+
+def test_groups_of_rotations_are_found_among_distinct_ones_on_any_threads() -> None:
+    random = np.random.default_rng(6)
+    body = ConvexPolyhedron(random.normal(size=(6, 3)))
+    counts = {0: 700, 1: 800, 2: 3}
+    which = np.concatenate([np.full(n, k) for k, n in counts.items()] + [np.full(40_000, -1)])
+    random.shuffle(which)
+    starts = np.concatenate(
+        [random.uniform(-3, 3, (len(which), 3)), random.normal(size=(len(which), 4))], axis=1
+    )
+    starts[:, 3:] /= np.linalg.norm(starts[:, 3:], axis=1, keepdims=True)
+    for k in counts:
+        starts[which == k, 3:] = starts[np.argmax(which == k), 3:]
+
+    def columns(rows: Any, threads: int) -> list[Any]:
+        found = cast_many(body, CUBE, AHEAD, moving_pose=starts[rows], threads=threads)
+        return [found.translation, found.normal, found.translation_lower, found.margin]
+
+    every = columns(slice(None), 1)
+    for one, other in zip(every, columns(slice(None), 3), strict=True):
+        np.testing.assert_array_equal(one, other)
+    # Each group has the answers that it has alone, a row without a group those of few rows.
+    for k, n in counts.items():
+        rows = np.flatnonzero(which == k)
+        assert len(rows) == n
+        for one, other in zip(every, columns(rows, 1), strict=True):
+            np.testing.assert_array_equal(one[rows], other)
+    distinct = np.flatnonzero(which == -1)[:200]
+    for one, other in zip(every, columns(distinct, 1), strict=True):
+        np.testing.assert_array_equal(one[distinct], other)
+    # The faces of a group have other margins than the search.
+    rows = np.flatnonzero(which == 0)
+    few = columns(rows[:50], 1)[3]
+    apart = ~np.isnan(few)
+    assert apart.any() and np.any(few[apart] != every[3][rows[:50]][apart])

@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::table;
-use crate::columns::{Corners, FEATURES, NO_CORNERS, NUMBERS, Row, VECTORS};
+use crate::columns::{Corners, FEATURES, Places, Row};
 use crate::errors::error;
 
 /// Number of rows between two reads of the clock.
@@ -44,24 +44,27 @@ pub(crate) struct Plan<'a> {
 }
 
 impl Plan<'_> {
-    /// Answers all rows.
+    /// Answers all rows. `answer` writes the answer of a row, or returns the reason for its absence.
     pub(crate) fn run<'py>(
         &self,
         py: Python<'py>,
-        answer: impl Fn(usize) -> Result<Row, String> + Sync,
+        answer: impl Fn(usize, &mut Row<'_>) -> Result<(), String> + Sync,
     ) -> PyResult<Answered<'py>> {
         let mut columns = Columns::new(self.rows, self.columns, self.featured);
         let failures = Failures::default();
         let error = self.outcomes.len() as u8 - 1;
-        let ask = |row: usize| {
-            answer_or_bug(|| answer(row)).unwrap_or_else(|message| {
-                failures.lock().unwrap_or_else(PoisonError::into_inner).push((row, message));
-                Row { outcome: error, ..Row::NONE }
-            })
+        let ask = |number: usize, row: &mut Row<'_>| {
+            if let Err(message) = answer_or_bug(|| answer(number, row)) {
+                row.clear();
+                row.set_outcome(error);
+                failures.lock().unwrap_or_else(PoisonError::into_inner).push((number, message));
+            }
         };
         let parts = columns.chunks(self.chunk);
         py.detach(|| {
-            run_on_threads(parts, self.threads, |part, stop| answer_chunk(&ask, part, stop))
+            run_on_threads(parts, self.threads, |(first, part), stop| {
+                answer_chunk(&ask, first, part, stop);
+            })
         })?;
         let mut failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
         failures.sort_unstable();
@@ -71,20 +74,9 @@ impl Plan<'_> {
     }
 }
 
-/// A chunk's part of every column.
-struct Part<'a> {
-    first: usize,
-    places: &'a [Vec<usize>; 2],
-    outcome: &'a mut [u8],
-    numbers: Vec<&'a mut [f64]>,
-    vectors: Vec<&'a mut [[f64; 3]]>,
-    /// Empty, or one column for each of the two bodies.
-    features: Vec<&'a mut [Corners]>,
-}
-
-/// All columns. `places` has the index of each column of numbers and vectors in a [`Row`].
+/// All columns.
 struct Columns {
-    places: [Vec<usize>; 2],
+    places: Places,
     outcome: Vec<u8>,
     numbers: Vec<Vec<f64>>,
     vectors: Vec<Vec<[f64; 3]>>,
@@ -93,13 +85,11 @@ struct Columns {
 
 impl Columns {
     fn new(n: usize, names: &[String], featured: bool) -> Self {
-        let found = |known: &[&str]| -> Vec<usize> {
-            names.iter().filter_map(|name| known.iter().position(|one| one == name)).collect()
-        };
-        let places = [found(&NUMBERS), found(&VECTORS)];
-        let numbers = vec![vec![0.0; n]; places[0].len()];
-        let vectors = vec![vec![[0.0; 3]; n]; places[1].len()];
-        let corners = vec![vec![NO_CORNERS; n]; if featured { FEATURES.len() } else { 0 }];
+        let places = Places::new(names);
+        let [numbers, vectors] = places.names().map(|names| names.len());
+        // Memory of zeros is provided on first access, by the threads that answer the rows.
+        let (numbers, vectors) = (vec![vec![0.0; n]; numbers], vec![vec![[0.0; 3]; n]; vectors]);
+        let corners = vec![vec![[0; 3]; n]; if featured { FEATURES.len() } else { 0 }];
         Self { places, outcome: vec![0; n], numbers, vectors, features: corners }
     }
 
@@ -107,11 +97,12 @@ impl Columns {
     fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let found = PyDict::new(py);
         found.set_item("outcome", self.outcome.into_pyarray(py))?;
-        for (place, column) in self.places[0].iter().zip(self.numbers) {
-            found.set_item(NUMBERS[*place], column.into_pyarray(py))?;
+        let [numbers, vectors] = self.places.names();
+        for (name, column) in numbers.into_iter().zip(self.numbers) {
+            found.set_item(name, column.into_pyarray(py))?;
         }
-        for (place, column) in self.places[1].iter().zip(self.vectors) {
-            found.set_item(VECTORS[*place], table(py, column)?)?;
+        for (name, column) in vectors.into_iter().zip(self.vectors) {
+            found.set_item(name, table(py, column)?)?;
         }
         for (name, column) in FEATURES.iter().zip(self.features) {
             found.set_item(name, table(py, column)?)?;
@@ -119,18 +110,21 @@ impl Columns {
         Ok(found)
     }
 
-    /// Cuts all columns into chunks of rows.
-    fn chunks(&mut self, chunk: usize) -> Vec<Part<'_>> {
+    /// Cuts all columns into chunks of rows, each with the number of its first row.
+    fn chunks(&mut self, chunk: usize) -> Vec<(usize, Row<'_>)> {
         let mut numbers: Vec<_> = self.numbers.iter_mut().map(|c| c.chunks_mut(chunk)).collect();
         let mut vectors: Vec<_> = self.vectors.iter_mut().map(|c| c.chunks_mut(chunk)).collect();
         let mut features: Vec<_> = self.features.iter_mut().map(|c| c.chunks_mut(chunk)).collect();
-        let part = |(k, outcome)| Part {
-            first: k * chunk,
-            places: &self.places,
-            outcome,
-            numbers: numbers.iter_mut().filter_map(Iterator::next).collect(),
-            vectors: vectors.iter_mut().filter_map(Iterator::next).collect(),
-            features: features.iter_mut().filter_map(Iterator::next).collect(),
+        let part = |(k, outcomes)| {
+            let row = Row {
+                at: 0,
+                places: &self.places,
+                outcomes,
+                numbers: numbers.iter_mut().filter_map(Iterator::next).collect(),
+                vectors: vectors.iter_mut().filter_map(Iterator::next).collect(),
+                features: features.iter_mut().filter_map(Iterator::next).collect(),
+            };
+            (k * chunk, row)
         };
         self.outcome.chunks_mut(chunk).enumerate().map(part).collect()
     }
@@ -139,24 +133,20 @@ impl Columns {
 /// Rows without an answer, with the reasons.
 type Failures = Mutex<Vec<(usize, String)>>;
 
-/// Answers the rows of a chunk, until `stop` returns true.
-fn answer_chunk(ask: &impl Fn(usize) -> Row, part: Part<'_>, stop: &mut dyn FnMut() -> bool) {
-    let Part { first, places, outcome, mut numbers, mut vectors, mut features } = part;
-    for i in 0..outcome.len() {
-        if i % LOOK == 0 && stop() {
+/// Answers the rows of a chunk, until `stop` returns true. `first` is the number of the first row.
+fn answer_chunk(
+    ask: &impl Fn(usize, &mut Row<'_>),
+    first: usize,
+    mut row: Row<'_>,
+    stop: &mut dyn FnMut() -> bool,
+) {
+    for at in 0..row.outcomes.len() {
+        if at % LOOK == 0 && stop() {
             return;
         }
-        let row = ask(first + i);
-        outcome[i] = row.outcome;
-        for (column, place) in numbers.iter_mut().zip(&places[0]) {
-            column[i] = row.numbers[*place];
-        }
-        for (column, place) in vectors.iter_mut().zip(&places[1]) {
-            column[i] = row.vectors[*place];
-        }
-        for (column, corners) in features.iter_mut().zip(row.features) {
-            column[i] = corners;
-        }
+        row.at = at;
+        row.clear();
+        ask(first + at, &mut row);
     }
 }
 
@@ -189,6 +179,12 @@ pub(crate) fn each<T: Send>(
     answers.into_iter().flatten().enumerate().map(answer).collect()
 }
 
+/// Returns the requested number of threads, or the number of processors.
+pub(crate) fn thread_count(requested: Option<usize>) -> usize {
+    let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    requested.unwrap_or_else(all)
+}
+
 /// Processes all parts on `threads` threads, or on all processors.
 ///
 /// If a signal handler raises, the second argument of `work` returns true from then on, and the exception is
@@ -198,8 +194,7 @@ fn run_on_threads<P: Send>(
     threads: Option<usize>,
     work: impl Fn(P, &mut dyn FnMut() -> bool) + Sync,
 ) -> PyResult<()> {
-    let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let threads = threads.unwrap_or_else(all).clamp(1, parts.len().max(1));
+    let threads = thread_count(threads).clamp(1, parts.len().max(1));
     let parts = Mutex::new(parts.into_iter());
     let next = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
     let stopped = AtomicBool::new(false);

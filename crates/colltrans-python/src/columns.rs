@@ -15,15 +15,49 @@ use pyo3::prelude::*;
 use crate::arrays::coordinates;
 use crate::repeats::RowAnswerer;
 
-/// The values of an answer; NaN for a missing number.
-#[derive(Clone, Copy)]
-pub(crate) struct Row {
-    /// An index into the outcomes of the question.
-    pub(crate) outcome: u8,
-    pub(crate) numbers: [f64; NUMBERS.len()],
-    pub(crate) vectors: [[f64; 3]; VECTORS.len()],
-    /// The features of both bodies, if the features are requested.
-    pub(crate) features: [Corners; 2],
+/// The entries of a row in the columns of a chunk of rows. Answers are written where they stay.
+pub(crate) struct Row<'a> {
+    /// Position of the row in the chunk.
+    pub(crate) at: usize,
+    pub(crate) places: &'a Places,
+    /// Indices into the outcomes of the question.
+    pub(crate) outcomes: &'a mut [u8],
+    pub(crate) numbers: Vec<&'a mut [f64]>,
+    pub(crate) vectors: Vec<&'a mut [[f64; 3]]>,
+    /// Empty, or one column for each of the two bodies.
+    pub(crate) features: Vec<&'a mut [Corners]>,
+}
+
+/// The position of each of [`NUMBERS`] and [`VECTORS`] among the requested columns; `None` if it is not requested.
+pub(crate) struct Places {
+    numbers: [Option<u8>; NUMBERS.len()],
+    vectors: [Option<u8>; VECTORS.len()],
+}
+
+impl Places {
+    /// Returns the positions for columns in the order of [`NUMBERS`] and [`VECTORS`].
+    pub(crate) fn new(names: &[String]) -> Self {
+        Self { numbers: positions(NUMBERS, names), vectors: positions(VECTORS, names) }
+    }
+
+    /// Returns the names of the requested columns of numbers, and of those of vectors.
+    pub(crate) fn names(&self) -> [Vec<&'static str>; 2] {
+        let of = |names: &[&'static str], places: &[Option<u8>]| {
+            let known = names.iter().zip(places);
+            known.filter(|(_, place)| place.is_some()).map(|(name, _)| *name).collect()
+        };
+        [of(&NUMBERS, &self.numbers), of(&VECTORS, &self.vectors)]
+    }
+}
+
+/// Returns the positions of the requested names among all requested ones, in the order of `known`.
+fn positions<const N: usize>(known: [&str; N], requested: &[String]) -> [Option<u8>; N] {
+    let mut count = 0;
+    known.map(|known| {
+        let is_requested = requested.iter().any(|name| name == known);
+        count += u8::from(is_requested);
+        is_requested.then(|| count - 1)
+    })
 }
 
 /// The first vertices of a feature, as numbers of the input: one for a vertex, two for an edge, three for a
@@ -45,7 +79,7 @@ macro_rules! columns {
 }
 
 columns! {
-    /// The names of [`Row::numbers`].
+    /// The names of columns of numbers.
     NUMBERS, Numbers:
     DISTANCE = "distance",
     TRANSLATION = "translation",
@@ -69,7 +103,7 @@ columns! {
 }
 
 columns! {
-    /// The names of [`Row::vectors`].
+    /// The names of columns of vectors.
     VECTORS, Vectors:
     NORMAL = "normal",
     POINT = "point",
@@ -121,161 +155,186 @@ impl Question {
         }
     }
 
-    /// Answers a question that has a direction, and adds the features in contact if `featured` is set.
-    pub(crate) fn ask<'a>(
+    /// Answers a question that has a direction.
+    pub(crate) fn answer_row<'a>(
         self,
         cast: &Cast<'a>,
         by: &RowAnswerer<'_, '_, 'a>,
-        featured: bool,
-    ) -> Result<Row, colltrans::QueryError> {
-        let of = |outcome: u8, first: &Contact| Row::from_contact(outcome, first, cast, featured);
-        Ok(match self {
+        row: &mut Row<'_>,
+    ) -> Result<(), colltrans::QueryError> {
+        match self {
             Self::Contact => match by.first_contact(cast)? {
-                Outcome::Contact(contact) => of(0, &contact),
+                Outcome::Contact(contact) => row.set_contact(0, &contact, cast),
                 Outcome::Grazing(grazing) => {
-                    of(1, &grazing.contact).with_number(OVERLAP, grazing.overlap)
+                    row.set_contact(1, &grazing.contact, cast).set_number(OVERLAP, grazing.overlap)
                 }
-                Outcome::Separated(separated) => Row::from_separation(2, &separated),
+                Outcome::Separated(separated) => row.set_separation(2, &separated),
             },
             Self::Range => match by.contact_range(cast)? {
-                ContactRange::Contact { first, last } => of(0, &first).with_exit(&last),
-                ContactRange::Grazing { first, last } => of(1, &first.contact)
-                    .with_exit(&last.contact)
-                    .with_number(OVERLAP, first.overlap),
-                ContactRange::Separated(separated) => Row::from_separation(2, &separated),
+                ContactRange::Contact { first, last } => {
+                    row.set_contact(0, &first, cast).set_exit(&last)
+                }
+                ContactRange::Grazing { first, last } => row
+                    .set_contact(1, &first.contact, cast)
+                    .set_exit(&last.contact)
+                    .set_number(OVERLAP, first.overlap),
+                ContactRange::Separated(separated) => row.set_separation(2, &separated),
             },
             // The other questions have no direction and do not reach this function.
-            _ => Row::from_clearance(&by.clearance(cast)?, cast, featured),
-        })
+            _ => row.set_clearance(&by.clearance(cast)?, cast),
+        };
+        Ok(())
     }
 }
 
-impl Row {
-    pub(crate) const NONE: Self = Self {
-        outcome: 0,
-        numbers: [f64::NAN; NUMBERS.len()],
-        vectors: [[f64::NAN; 3]; VECTORS.len()],
-        features: [NO_CORNERS; 2],
-    };
+impl Row<'_> {
+    /// Removes the answer.
+    pub(crate) fn clear(&mut self) {
+        let at = self.at;
+        self.outcomes[at] = 0;
+        self.numbers.iter_mut().for_each(|column| column[at] = f64::NAN);
+        self.vectors.iter_mut().for_each(|column| column[at] = [f64::NAN; 3]);
+        self.features.iter_mut().for_each(|column| column[at] = NO_CORNERS);
+    }
 
-    pub(crate) fn with_number(mut self, which: usize, number: f64) -> Self {
-        self.numbers[which] = number;
+    /// Sets the index of the outcome.
+    pub(crate) fn set_outcome(&mut self, outcome: u8) -> &mut Self {
+        self.outcomes[self.at] = outcome;
         self
     }
 
-    pub(crate) fn with_vector(mut self, which: usize, vector: [f64; 3]) -> Self {
-        self.vectors[which] = vector;
+    pub(crate) fn set_number(&mut self, which: usize, number: f64) -> &mut Self {
+        if let Some(place) = self.places.numbers[which] {
+            self.numbers[usize::from(place)][self.at] = number;
+        }
         self
     }
 
-    /// Converts the record of a question about two bodies at fixed poses.
-    pub(crate) fn from_record(question: Question, record: &Record) -> Self {
-        let row = Self::from_ending(question, record.outcome());
+    pub(crate) fn set_vector(&mut self, which: usize, vector: [f64; 3]) -> &mut Self {
+        if let Some(place) = self.places.vectors[which] {
+            self.vectors[usize::from(place)][self.at] = vector;
+        }
+        self
+    }
+
+    /// Writes the record of a question about two bodies at fixed poses.
+    pub(crate) fn set_record(&mut self, question: Question, record: &Record) {
+        self.set_ending(question, record.outcome());
         match record {
-            Record::Distance(of) => row
-                .with_bounds(of.lower, of.upper)
-                .with_optional_vector(NORMAL, of.normal)
-                .with_optional_vector(ON_MOVING, of.points.map(|points| points[0]))
-                .with_optional_vector(ON_FIXED, of.points.map(|points| points[1]))
-                .with_features(of.features.as_ref()),
-            Record::Depth(of) => row
-                .with_bounds(of.lower, of.upper)
-                .with_overlaps(&of.start_overlaps)
-                .with_optional_vector(DIRECTION, of.direction),
+            Record::Distance(of) => self
+                .set_bounds(of.lower, of.upper)
+                .set_optional_vector(NORMAL, of.normal)
+                .set_optional_vector(ON_MOVING, of.points.map(|points| points[0]))
+                .set_optional_vector(ON_FIXED, of.points.map(|points| points[1]))
+                .set_features(of.features.as_ref()),
+            Record::Depth(of) => self
+                .set_bounds(of.lower, of.upper)
+                .set_overlaps(&of.start_overlaps)
+                .set_optional_vector(DIRECTION, of.direction),
             // Records of other questions have no columns here.
-            _ => row,
+            _ => self,
+        };
+    }
+
+    /// Writes the record of a motion.
+    pub(crate) fn set_motion(&mut self, question: Question, of: &MotionRecord) {
+        self.set_ending(question, of.outcome)
+            .set_bounds(of.time.map(|time| time.lower), of.time.and_then(|time| time.upper))
+            .set_overlaps(&of.start_overlaps)
+            .set_optional_vector(NORMAL, of.normal)
+            .set_optional_vector(POINT, of.point)
+            .set_features(of.features.as_ref());
+    }
+
+    fn set_ending(&mut self, question: Question, outcome: Ending) -> &mut Self {
+        let found = question.outcomes().iter().position(|known| *known == outcome.name());
+        self.set_outcome(found.unwrap_or_default() as u8)
+    }
+
+    fn set_bounds(&mut self, lower: Option<f64>, upper: Option<f64>) -> &mut Self {
+        self.set_number(AT_LEAST, lower.unwrap_or(f64::NAN))
+            .set_number(AT_MOST, upper.unwrap_or(f64::NAN))
+    }
+
+    fn set_overlaps(&mut self, overlaps: &[StartOverlapRecord]) -> &mut Self {
+        let least = overlaps.first().and_then(|overlap| overlap.least_tolerance);
+        self.set_number(LEAST_TOLERANCE, least.unwrap_or(f64::NAN))
+    }
+
+    pub(crate) fn set_optional_vector(
+        &mut self,
+        which: usize,
+        vector: Option<[f64; 3]>,
+    ) -> &mut Self {
+        match vector {
+            Some(vector) => self.set_vector(which, vector),
+            None => self,
         }
     }
 
-    /// Converts the record of a motion.
-    pub(crate) fn from_motion(question: Question, of: &MotionRecord) -> Self {
-        Self::from_ending(question, of.outcome)
-            .with_bounds(of.time.map(|time| time.lower), of.time.and_then(|time| time.upper))
-            .with_overlaps(&of.start_overlaps)
-            .with_optional_vector(NORMAL, of.normal)
-            .with_optional_vector(POINT, of.point)
-            .with_features(of.features.as_ref())
-    }
-
-    fn from_ending(question: Question, outcome: Ending) -> Self {
-        let found = question.outcomes().iter().position(|known| *known == outcome.name());
-        Self { outcome: found.unwrap_or_default() as u8, ..Self::NONE }
-    }
-
-    fn with_bounds(self, lower: Option<f64>, upper: Option<f64>) -> Self {
-        self.with_number(AT_LEAST, lower.unwrap_or(f64::NAN))
-            .with_number(AT_MOST, upper.unwrap_or(f64::NAN))
-    }
-
-    fn with_overlaps(self, overlaps: &[StartOverlapRecord]) -> Self {
-        let least = overlaps.first().and_then(|overlap| overlap.least_tolerance);
-        self.with_number(LEAST_TOLERANCE, least.unwrap_or(f64::NAN))
-    }
-
-    fn with_optional_vector(self, which: usize, vector: Option<[f64; 3]>) -> Self {
-        vector.map_or(self, |vector| self.with_vector(which, vector))
-    }
-
-    fn with_features(mut self, features: Option<&FeaturesRecord>) -> Self {
+    fn set_features(&mut self, features: Option<&FeaturesRecord>) -> &mut Self {
         if let Some(FeaturesRecord { moving, fixed }) = features {
-            let of = |feature: &FeatureRecord| corners(feature.vertices.iter().copied());
-            self.features = [of(moving), of(fixed)];
+            for (column, feature) in self.features.iter_mut().zip([moving, fixed]) {
+                let FeatureRecord { vertices, .. } = feature;
+                column[self.at] = corners(vertices.iter().copied());
+            }
         }
         self
     }
 
-    fn with_exit(self, last: &Contact) -> Self {
+    fn set_exit(&mut self, last: &Contact) -> &mut Self {
         let exit = last.exit();
-        self.with_number(EXIT, exit.value)
-            .with_number(EXIT_LOWER, exit.lower)
-            .with_number(EXIT_UPPER, exit.upper)
+        self.set_number(EXIT, exit.value)
+            .set_number(EXIT_LOWER, exit.lower)
+            .set_number(EXIT_UPPER, exit.upper)
     }
 
-    fn from_contact(outcome: u8, first: &Contact, cast: &Cast<'_>, featured: bool) -> Self {
-        let mut row = Self { outcome, ..Self::NONE }
-            .with_vector(NORMAL, coordinates(first.normal))
-            .with_vector(POINT, coordinates(first.witness_points(cast).on_fixed));
-        if featured {
-            let Features { moving, fixed } = first.features(cast);
-            row.features =
-                [corners(moving.vertices(cast.moving())), corners(fixed.vertices(cast.fixed()))];
-        }
+    fn set_contact(&mut self, outcome: u8, first: &Contact, cast: &Cast<'_>) -> &mut Self {
         let proof = &first.certificate;
-        row.with_number(TRANSLATION, first.translation)
-            .with_number(LOWER, proof.lower)
-            .with_number(UPPER, proof.upper)
-            .with_number(ROUNDING, proof.rounding)
+        self.set_place(outcome, first, cast)
+            .set_number(TRANSLATION, first.translation)
+            .set_number(LOWER, proof.lower)
+            .set_number(UPPER, proof.upper)
     }
 
-    fn from_separation(outcome: u8, separated: &colltrans::Separated) -> Self {
-        let normal = coordinates(separated.certificate.normal);
-        let row = Self { outcome, ..Self::NONE }.with_vector(NORMAL, normal);
-        row.with_number(MARGIN, separated.certificate.margin)
+    /// Writes where the bodies are in contact: all but the translation and its bounds.
+    fn set_place(&mut self, outcome: u8, contact: &Contact, cast: &Cast<'_>) -> &mut Self {
+        if let [of_moving, of_fixed] = &mut self.features[..] {
+            let Features { moving, fixed } = contact.features(cast);
+            of_moving[self.at] = corners(moving.vertices(cast.moving()));
+            of_fixed[self.at] = corners(fixed.vertices(cast.fixed()));
+        }
+        self.set_outcome(outcome)
+            .set_vector(NORMAL, coordinates(contact.normal))
+            .set_vector(POINT, coordinates(contact.witness_points(cast).on_fixed))
+            .set_number(ROUNDING, contact.certificate.rounding)
     }
 
-    fn from_clearance(answer: &Clearance, cast: &Cast<'_>, featured: bool) -> Self {
-        let of = |outcome: u8, first: &Contact| Self::from_contact(outcome, first, cast, featured);
-        let row = match answer {
-            Clearance::Blocked { contact, .. } => of(0, contact),
+    fn set_separation(&mut self, outcome: u8, separated: &colltrans::Separated) -> &mut Self {
+        self.set_outcome(outcome)
+            .set_vector(NORMAL, coordinates(separated.certificate.normal))
+            .set_number(MARGIN, separated.certificate.margin)
+    }
+
+    fn set_clearance(&mut self, answer: &Clearance, cast: &Cast<'_>) -> &mut Self {
+        match answer {
+            Clearance::Blocked { contact, .. } => self.set_contact(0, contact, cast),
             Clearance::Free(FreeReason::Slides(grazing)) => {
-                of(1, &grazing.contact).with_number(OVERLAP, grazing.overlap)
+                self.set_contact(1, &grazing.contact, cast).set_number(OVERLAP, grazing.overlap)
             }
             // The last contact is the first one of the reversed cast, so its bounds do not apply to this
             // direction.
-            Clearance::Free(FreeReason::Behind(last)) => Self {
-                numbers: Self::NONE.with_number(ROUNDING, last.certificate.rounding).numbers,
-                ..Self::from_contact(2, last, &cast.reversed(), featured)
+            Clearance::Free(FreeReason::Behind(last)) => {
+                self.set_place(2, last, &cast.reversed()).set_exit(last)
             }
-            .with_exit(last),
-            Clearance::Free(FreeReason::Separated(separated)) => {
-                Self::from_separation(3, separated)
-            }
-            Clearance::Overlapping(OverlapAhead { first, last }) => of(4, first)
-                .with_exit(last)
-                .with_number(BACK, -first.certificate.lower)
-                .with_number(ON, -last.certificate.lower),
-        };
-        row.with_number(DISTANCE, answer.distance().unwrap_or(f64::NAN))
+            Clearance::Free(FreeReason::Separated(separated)) => self.set_separation(3, separated),
+            Clearance::Overlapping(OverlapAhead { first, last }) => self
+                .set_contact(4, first, cast)
+                .set_exit(last)
+                .set_number(BACK, -first.certificate.lower)
+                .set_number(ON, -last.certificate.lower),
+        }
+        .set_number(DISTANCE, answer.distance().unwrap_or(f64::NAN))
     }
 }
 

@@ -7,14 +7,14 @@ use std::collections::HashMap;
 
 use colltrans::glam::DVec3;
 use colltrans::motion::Motion;
-use colltrans::record::{MotionRecord, PairQuestion};
+use colltrans::record::{MotionRecord, PairQuestion, Record};
 use colltrans::{Cast, Options, Pair, Placed, Pose, Solver};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::body;
-use crate::bulk::{Answered, Plan};
+use crate::bulk::{Answered, Plan, thread_count};
 use crate::columns::{Question, Row};
 use crate::motion::{EITHER, convex_cast, solid_cast};
 use crate::repeats::{Repeats, RowAnswerer, RowAnswerers};
@@ -31,8 +31,6 @@ struct Work<'a> {
     bodies: [Bodies<'a>; 2],
     poses: [Table<'a>; 2],
     with: RowQuery<'a>,
-    /// Whether to add the columns of features.
-    featured: bool,
 }
 
 /// The arguments of a question besides the bodies.
@@ -83,45 +81,50 @@ impl Motions<'_> {
 
 impl<'a> Work<'a> {
     /// Finds rows with the same bodies and rotations; `None` if they cannot share data.
-    fn repeats(&self, n: usize) -> Option<Repeats<'a>> {
+    fn repeats(&self, n: usize, threads: usize) -> Option<Repeats<'a>> {
         match &self.with {
             RowQuery::Direction { directions, min_gaps, options, .. }
                 if options.solver != Solver::Cta =>
             {
                 let touches = |row: usize| min_gaps.row(row)[0] == 0.0;
-                Some(Repeats::find(n, &self.bodies, &self.poses, directions, touches))
+                Some(Repeats::find(n, &self.bodies, &self.poses, directions, threads, touches))
             }
             _ => None,
         }
     }
 
-    fn answer(&self, row: usize, by: &RowAnswerer<'_, '_, 'a>) -> Result<Row, String> {
+    /// Answers a row and writes the answer to `to`.
+    fn answer(
+        &self,
+        row: usize,
+        by: &RowAnswerer<'_, '_, 'a>,
+        to: &mut Row<'_>,
+    ) -> Result<(), String> {
         let (moving, fixed) = (self.bodies[0].get(row)?, self.bodies[1].get(row)?);
         if let RowQuery::Motion { motions, min_gaps, tolerances } = &self.with {
             let of = |k: usize| motions[k].get(row, &self.poses[k]);
             let (motions, tolerance) = ([of(0)?, of(1)?], tolerances.row(row)[0]);
             let tolerance = Some(tolerance).filter(|tolerance| !tolerance.is_nan());
-            let motions = motions.each_ref();
-            return answer_moving(
-                self.question,
-                [moving, fixed],
-                motions,
-                min_gaps.row(row)[0],
-                tolerance,
-            );
+            let (bodies, min_gap) = ([moving, fixed], min_gaps.row(row)[0]);
+            let record =
+                answer_moving(self.question, bodies, motions.each_ref(), min_gap, tolerance)?;
+            to.set_motion(self.question, &record);
+            return Ok(());
         }
-        let (at, to) = (self.poses[0].pose(row)?, self.poses[1].pose(row)?);
+        let poses = [self.poses[0].pose(row)?, self.poses[1].pose(row)?];
         let RowQuery::Direction { directions, graze_tolerances, min_gaps, options } = &self.with
         else {
-            return self.answer_placed([moving, fixed], [at, to], row);
+            let record = self.answer_placed([moving, fixed], poses, row)?;
+            to.set_record(self.question, &record);
+            return Ok(());
         };
         let (moving, fixed) = (moving.convex()?, fixed.convex()?);
         let options = options
             .with_graze_tolerance(graze_tolerances.row(row)[0])
             .with_min_gap(min_gaps.row(row)[0]);
-        Cast::new(moving.at(at), fixed.at(to), directions.vector(row))
+        Cast::new(moving.at(poses[0]), fixed.at(poses[1]), directions.vector(row))
             .and_then(|cast| cast.with_options(options))
-            .and_then(|cast| self.question.ask(&cast, by, self.featured))
+            .and_then(|cast| self.question.answer_row(&cast, by, to))
             .map_err(|what| what.to_string())
     }
 
@@ -131,7 +134,7 @@ impl<'a> Work<'a> {
         bodies: [AnyBody<'_>; 2],
         poses: [Pose; 2],
         row: usize,
-    ) -> Result<Row, String> {
+    ) -> Result<Record, String> {
         let question = match (self.question, &self.with) {
             (Question::Within, RowQuery::Length(lengths)) => {
                 PairQuestion::Within(lengths.row(row)[0])
@@ -149,8 +152,7 @@ impl<'a> Work<'a> {
             Pair::new(placed(0)?, placed(1)?)
                 .and_then(|pair| question.answer_solids(&pair)?.record(&pair))
         };
-        let record = record.map_err(|what| what.to_string())?;
-        Ok(Row::from_record(self.question, &record))
+        record.map_err(|what| what.to_string())
     }
 }
 
@@ -161,7 +163,7 @@ fn answer_moving(
     motions: [&Motion; 2],
     min_gap: f64,
     tolerance: Option<f64>,
-) -> Result<Row, String> {
+) -> Result<MotionRecord, String> {
     let clears = matches!(question, Question::MotionClearance);
     let record = if let [AnyBody::Convex(p), AnyBody::Convex(q)] = bodies {
         if tolerance.is_some() && min_gap != 0.0 {
@@ -185,7 +187,7 @@ fn answer_moving(
             })
         })
     };
-    record.map(|record| Row::from_motion(question, &record)).map_err(|what| what.to_string())
+    record.map_err(|what| what.to_string())
 }
 
 /// Returns the bodies of a list. An exception in the list stands for a body that could not be built.
@@ -259,14 +261,14 @@ pub(crate) fn ask_many<'py>(
         ],
         poses: [table("moving_pose")?, table("fixed_pose")?],
         with,
-        featured,
     };
-    let repeats = py.detach(|| work.repeats(n));
+    let repeats = py.detach(|| work.repeats(n, thread_count(threads)));
     let by = repeats.as_ref().map(RowAnswerers::new);
     let outcomes = question.outcomes();
     let plan = Plan { rows: n, chunk: CHUNK, columns: &columns, featured, outcomes, threads };
-    plan.run(py, |row| {
-        work.answer(row, &by.as_ref().map_or(RowAnswerer::Cast, |by| by.for_row(row)))
+    plan.run(py, |row, to| {
+        let by = by.as_ref().map_or(RowAnswerer::Cast, |by| by.for_row(row));
+        work.answer(row, &by, to)
     })
 }
 

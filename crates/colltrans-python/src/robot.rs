@@ -647,28 +647,27 @@ impl PathAnswer {
     }
 }
 
-/// Returns the columns of an answer.
-fn row_of(outcome: &PathOutcome) -> Row {
+/// Writes an answer to the columns.
+fn write_row(row: &mut Row<'_>, outcome: &PathOutcome) {
     let (code, of) = match outcome {
         PathOutcome::Contact(of) => (0, of),
         PathOutcome::Grazing(of) => (1, of),
         PathOutcome::Overlapping(of) => (3, of),
         PathOutcome::Undecided(of) => (4, of),
-        _ => return Row { outcome: 2, ..Row::NONE },
+        _ => {
+            row.set_outcome(2);
+            return;
+        }
     };
-    let point = of.points.map(|points| points[0]);
-    let row = Row { outcome: code, ..Row::NONE }
-        .with_number(columns::AT_LEAST, of.lower)
-        .with_number(columns::AT_MOST, if of.upper.is_finite() { of.upper } else { f64::NAN })
-        .with_number(columns::ROW, of.place.row as f64)
-        .with_number(columns::SHARE, of.place.share)
-        .with_number(columns::FIRST, of.pair[0] as f64)
-        .with_number(columns::SECOND, of.pair[1] as f64);
-    [(columns::NORMAL, of.normal), (columns::POINT, point)]
-        .into_iter()
-        .fold(row, |row, (k, vector)| {
-            vector.map_or(row, |vector| row.with_vector(k, coordinates(vector)))
-        })
+    row.set_outcome(code)
+        .set_number(columns::AT_LEAST, of.lower)
+        .set_number(columns::AT_MOST, if of.upper.is_finite() { of.upper } else { f64::NAN })
+        .set_number(columns::ROW, of.place.row as f64)
+        .set_number(columns::SHARE, of.place.share)
+        .set_number(columns::FIRST, of.pair[0] as f64)
+        .set_number(columns::SECOND, of.pair[1] as f64)
+        .set_optional_vector(columns::NORMAL, of.normal.map(coordinates))
+        .set_optional_vector(columns::POINT, of.points.map(|points| coordinates(points[0])));
 }
 
 /// The extension's part of ``colltrans.path_many``.
@@ -701,9 +700,9 @@ pub(crate) fn ask_paths<'py>(
         outcomes: &OUTCOMES,
         threads,
     };
-    let answered = plan.run(py, |k| {
+    let answered = plan.run(py, |k, row| {
         let (path, _) = asked.path(&rows[k])?;
-        asked.first_contact(&path).map(|(found, _)| row_of(&found))
+        asked.first_contact(&path).map(|(found, _)| write_row(row, &found))
     })?;
     Ok((answered, asked.cell.names().to_vec()))
 }

@@ -64,8 +64,13 @@ pub(crate) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
+    /// Checks whether the table has one row for all queries.
+    pub(crate) fn is_single(&self) -> bool {
+        self.numbers.len() == self.width
+    }
+
     pub(crate) fn row(&self, row: usize) -> &'a [f64] {
-        let row = if self.numbers.len() == self.width { 0 } else { row };
+        let row = if self.is_single() { 0 } else { row };
         &self.numbers[row * self.width..(row + 1) * self.width]
     }
 

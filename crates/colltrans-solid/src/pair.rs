@@ -422,14 +422,13 @@ fn distance_answer(
     let mut steps = nearest.steps;
     let place = find_common_point(scene, nearest.lower, &mut steps);
     let spot = nearest.spot.unwrap_or_else(|| NearestPoints::from_triangles(scene, [0, 0]));
-    let (near, points) = match place {
-        Some(place) => (SolidNear::Meeting(place), shared_points(scene, place)),
-        None => {
-            let near = near_less_radii(&pair.bodies, spot.solid_near(scene));
-            let normal = if nearest.lower > 0.0 { spot.nearest.normal } else { DVec3::ZERO };
-            let cores = spot.witness_points(scene);
-            (near, points_on_surfaces(&pair.bodies, cores, near.distance(), normal))
-        }
+    let (near, points) = if let Some(place) = place {
+        (SolidNear::Meeting(place), shared_points(scene, place))
+    } else {
+        let near = near_less_radii(&pair.bodies, spot.solid_near(scene));
+        let normal = if nearest.lower > 0.0 { spot.nearest.normal } else { DVec3::ZERO };
+        let cores = spot.witness_points(scene);
+        (near, points_on_surfaces(&pair.bodies, cores, near.distance(), normal))
     };
     let lower = if place.is_some() { 0.0 } else { pair.bodies.less_radii(nearest.lower).max(0.0) };
     let spot = (lower > 0.0).then_some(spot);

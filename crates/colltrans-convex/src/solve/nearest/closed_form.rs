@@ -21,7 +21,7 @@ impl Difference<'_> {
 /// bounds from reaching `goal`.
 pub(super) fn nearest_of_segments(difference: &Difference, goal: &Goal) -> Option<DescentResult> {
     let [ends_of_moving, ends_of_fixed] =
-        [difference.bodies.moving, difference.bodies.fixed].map(|body| body.dimension() as u32);
+        [difference.bodies.moving, difference.bodies.fixed].map(|body| u32::from(body.dimension()));
     let corner = |moving: u32, fixed: u32| {
         let pair = VertexPair::from_indices(moving.min(ends_of_moving), fixed.min(ends_of_fixed));
         difference.corner_at(pair)

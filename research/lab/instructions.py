@@ -33,13 +33,16 @@ HEAD = ("kind", "vertices", "situation", "contestant", "steps", "iterations", *E
 Counts = tuple[float, float, float]
 
 
-def counted(program: Path, kind: str, vertices: int, queries: int) -> Iterable[list[str]]:
+def counted(
+    program: Path, kind: str, vertices: int, queries: int, last_level: str | None
+) -> Iterable[list[str]]:
     """Yields the rows of one kind and size."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "out"
         options = [f"--callgrind-out-file={out}", f"--toggle-collect={COUNTED}"]
         options += [f"--dump-after={COUNTED}", "--collect-atstart=no"]
         options += ["--cache-sim=yes", "--branch-sim=yes"]
+        options += [f"--LL={last_level}"] if last_level else []
         command = ["valgrind", "-q", "--tool=callgrind", *options, str(program), "count", kind]
         command += [str(vertices), str(queries)]
         text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
@@ -51,10 +54,8 @@ def counted(program: Path, kind: str, vertices: int, queries: int) -> Iterable[l
             # Events at the end of the line that did not occur are left out.
             found = dict(zip(names, map(int, totals), strict=False))
             sums = [sum(found.get(e, 0) for e in events) / queries for events in EVENTS.values()]
-            yield [
-                *(kind, str(vertices), situation, contestant),
-                *(f"{float(mean):.1f}" for mean in (steps, iterations, *sums)),
-            ]
+            means = [float(steps), float(iterations), *sums]
+            yield [kind, str(vertices), situation, contestant, *(f"{mean:.1f}" for mean in means)]
 
 
 def fit(rows: list[Counts]) -> list[float]:
@@ -120,8 +121,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("program", type=Path)
     parser.add_argument("output", type=Path)
-    parser.add_argument("--queries", type=int, default=40)
+    parser.add_argument("--queries", type=int, default=20)
     parser.add_argument("--vertices", type=int, nargs="+", default=[200, 3_200, 12_800, 51_200])
+    parser.add_argument("--last-level", metavar="SIZE,WAYS,LINE", help="simulated cache, bytes")
     arguments = parser.parse_args()
     rows = []
     with arguments.output.open("w", newline="") as file:
@@ -129,7 +131,9 @@ def main() -> None:
         writer.writerow(HEAD)
         for vertices in arguments.vertices:
             for kind in KINDS:
-                for row in counted(arguments.program, kind, vertices, arguments.queries):
+                for row in counted(
+                    arguments.program, kind, vertices, arguments.queries, arguments.last_level
+                ):
                     rows.append(row)
                     writer.writerow(row)
                     file.flush()

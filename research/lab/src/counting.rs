@@ -1,6 +1,6 @@
 //! Queries without timing, for a tool that counts instructions.
 //!
-//! `research/lab/instructions.py` runs them under callgrind, which counts in [`answer_all`] only. The script divides
+//! `research/lab/instructions.py` runs them under callgrind, which counts in `answer_all` only. The script divides
 //! by the number of queries, and fits the costs of `solvers/cost.rs`.
 
 use std::fmt::Write;
@@ -48,7 +48,7 @@ const SEED: u64 = 2007;
 pub const KINDS: [&str; 4] = ["balanced", "thin", "meridians", "triangles"];
 
 /// Answers `count` queries of each contestant about bodies of a kind of [`KINDS`] with about `n` vertices. Returns a
-/// line `situation,contestant,steps,iterations` for each call of [`answer_all`], with means.
+/// line `situation,contestant,steps,iterations` for each call of `answer_all`, with means.
 ///
 /// # Panics
 /// If the kind is not in [`KINDS`].

@@ -4,13 +4,13 @@
 //! the unit normal of a plane between the cores, from the moving to the fixed one. A direction `u` is blocked if the
 //! ray along it from the origin meets the interior of `M + B(R)`.
 //!
-//! - *Free*: if the plane keeps the cores `R` apart, every `u` with `n . u <= 0` is free, because the distance along `n`
-//!   does not decrease.
+//! - *Free*: if the plane keeps the cores `R` apart, every `u` with `n . u <= 0` is free, because the distance along
+//!   `n` does not decrease.
 //! - *Blocked*: let `m` be a point of `M` with `R <= |m| <= d`. The ray along `u` meets the interior of the ball of
 //!   radius `R` about `m` if the cosine of the angle between `u` and `m` exceeds `sqrt(d^2 - R^2) / d`.
 //!
-//! In contact `d` is `R`, and `m` is parallel to `n`: the free directions are the half-space. Rounding and the tolerance
-//! make `d` larger than `R` by a little. The directions between the two sets are undecided.
+//! In contact `d` is `R`, and `m` is parallel to `n`: the free directions are the half-space. Rounding and the
+//! tolerance make `d` larger than `R` by a little. The directions between the two sets are undecided.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,4 @@
-//! Free directions of rounded bodies in contact: against the clearance along each direction, and bodies that are refused.
+//! Free directions of rounded bodies in contact: against the clearance along each direction; bodies that are refused.
 
 use colltrans_convex::{Cast, Clearance, ConvexPolyhedron, Outcome, Placed, Pose, QueryError};
 use colltrans_removal::directions::{FreeError, FreeHalfSpace, HalfSpaceVerdict};

@@ -224,7 +224,7 @@ pub const CLAIMS: &[PaperClaim] = &[
         subject: Subject::Other,
         criteria: &[
             about("exponent of EGJK from 3,200 vertices, instructions", 1.0, Neither),
-            quoted("the same of EGJK with linear search"),
+            quoted("exponent of EGJK with linear search, instructions"),
             quoted("exponent of the time of EGJK"),
         ],
     },
@@ -387,7 +387,7 @@ pub const CLAIMS: &[PaperClaim] = &[
         subject: Subject::Cta,
         criteria: &[
             at_most("ratio of instructions at 0.13 % / at 1 %, median of all sizes", 1.0),
-            quoted("the same of times"),
+            quoted("this ratio, of times"),
         ],
     },
     PaperClaim {
@@ -402,7 +402,7 @@ pub const CLAIMS: &[PaperClaim] = &[
                 "ratio of instructions at the largest / at the smallest size, median of all changes",
                 1.0,
             ),
-            quoted("the same of times"),
+            quoted("this ratio, of times"),
         ],
     },
     PaperClaim {
@@ -414,8 +414,8 @@ pub const CLAIMS: &[PaperClaim] = &[
         subject: Subject::Cta,
         criteria: &[
             band("ratio of instructions on thin / on balanced faces", [0.75, 1.25], Less),
-            quoted("the same of times"),
-            quoted("the same of instructions, with a stretch of 100"),
+            quoted("this ratio, of times"),
+            quoted("this ratio, with a stretch of 100"),
         ],
     },
     PaperClaim {

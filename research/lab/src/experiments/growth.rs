@@ -19,7 +19,7 @@ use colltrans_testkit::timing::{Stopwatch, exponent, median};
 pub(super) const FIGURE_11: Experiment = Experiment {
     id: "figure-11",
     title: "steps and time against the size of the bodies",
-    seconds: [22.0, 85.0],
+    seconds: [35.0, 120.0],
     run,
 };
 
@@ -236,7 +236,7 @@ fn variants_table(balanced: &Grown) -> Table {
 /// Returns the table of the mean steps with the paper's cuts and cells, by brute force on bodies of moderate size.
 fn literal_table(plan: &Plan) -> Table {
     let sizes = plan.by_scale(&[50, 200][..], &[200, 800, 3_200], &[200, 800, 3_200]);
-    let count = plan.by_scale(10, 50, 200);
+    let count = plan.by_scale(10, 50, 100);
     let mut rows: Vec<Vec<String>> = literal::VARIANTS
         .iter()
         .map(|(name, _)| vec![(*name).to_owned()])

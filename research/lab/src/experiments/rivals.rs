@@ -458,10 +458,10 @@ mod tests {
     fn parity_is_where_costs_are_equal() {
         let sizes = [200.0, 2_000.0, 20_000.0];
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-9;
-        assert!(near(parity_size(&sizes, &[0.1, 0.1, 10.0]), 6_324.555_320_336_759));
+        assert!(near(parity_size(&sizes, &[0.1, 0.1, 10.0]), 2_000.0 * 10.0_f64.sqrt()));
         assert!(near(
             parity_size(&sizes, &[0.01, 0.1, 0.5]),
-            20_000.0 * 10.0_f64.powf(0.301_029_995_663_981_2 / 0.698_970_004_336_018_8)
+            20_000.0 * 10.0_f64.powf(2.0_f64.ln() / 5.0_f64.ln())
         ));
         assert!(near(parity_size(&sizes, &[10.0, 100.0, 100.0]), 20.0));
         assert_eq!(parity_size(&sizes, &[0.1, 0.5, 0.4]), PARITY_LIMITS[1]);

@@ -213,8 +213,9 @@ impl<'s, 'a, 'o, O: Observer> GapSearch<'s, 'a, 'o, O> {
         Steps { supports: self.bodies.supports, ..self.steps }
     }
 
-    /// Computes the crossing in closed form, of spheres, or of a sphere and a capsule: `M` is a point or a segment.
-    /// A line enters the ball about an end of the segment if it enters the cylinder about the whole edge beyond this end.
+    /// Computes the crossing in closed form, of spheres, or of a sphere and a capsule: `M` is a point or a segment. A
+    /// line enters the ball about an end of the segment if it enters the cylinder about the whole edge beyond this
+    /// end.
     ///
     /// Returns `None` for other bodies, if there is no crossing, or if rounding does not explain the difference of the
     /// bounds.

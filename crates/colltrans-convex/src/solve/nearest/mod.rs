@@ -319,8 +319,9 @@ pub fn nearest_points_within_share(
     )
 }
 
-/// Computes nearest points in closed form if possible. Otherwise searches in up to three stages, until `goal` is reached:
-/// by a descent in rounded numbers, by the plane of the simplex, and by a descent in numbers of twice the precision.
+/// Computes nearest points in closed form if possible. Otherwise searches in up to three stages, until `goal` is
+/// reached: by a descent in rounded numbers, by the plane of the simplex, and by a descent in numbers of twice the
+/// precision.
 #[inline]
 fn search_until(difference: &Difference, start: &NearestPairs, goal: &Goal) -> DescentResult {
     if difference.is_of_rounded_segments()

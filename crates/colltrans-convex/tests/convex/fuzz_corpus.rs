@@ -41,3 +41,8 @@ fn within_corpus() {
 fn min_gap_corpus() {
     fuzz::corpus("min_gap", 24).for_each(|bytes| fuzz::min_gap(&bytes));
 }
+
+#[test]
+fn rounded_corpus() {
+    fuzz::corpus("rounded", 26).for_each(|bytes| fuzz::rounded(&bytes));
+}

@@ -30,7 +30,7 @@ use crate::shapes::random_hull;
 use crate::tally::Tally;
 
 /// The families of scenes.
-pub const FAMILIES: [&str; 6] = ["rows", "coincident", "hulls", "thin", "far", "mixed"];
+pub const FAMILIES: [&str; 7] = ["rows", "coincident", "hulls", "thin", "far", "mixed", "rounded"];
 
 /// The linear programme is solved for one setting out of this many.
 const PROGRAMME_EVERY: u64 = 8;
@@ -464,6 +464,19 @@ fn draw_bodies(family: &str, random: &mut Random) -> Result<Vec<AnyBody>, String
             points(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)])?,
             cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 1e-9))?,
         ],
+        "rounded" => {
+            let corners = random_hull(8, random).vertices;
+            let bodies = [
+                ConvexPolyhedron::sphere(DVec3::ZERO, 0.5),
+                ConvexPolyhedron::capsule([DVec3::ZERO, DVec3::X], 0.25),
+                ConvexPolyhedron::from_points(&corners).and_then(|hull| hull.rounded(0.125)),
+            ];
+            let mut all = vec![cube];
+            for body in bodies {
+                all.push(body.map_err(|e| error_message(&e))?.into());
+            }
+            all
+        }
         _ => {
             let post = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 2.0));
             let bar = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0));
@@ -484,7 +497,7 @@ fn place_for(family: &str, random: &mut Random) -> Result<Pose, String> {
         "thin" if random.one_in(2) => (quarter, random.grid(-2, 2)),
         "thin" => (random.rotation(), random.grid(-2, 2)),
         "far" => (random.rotation(), DVec3::splat(1e6) + random.vector() * 4.0),
-        "mixed" if random.one_in(2) => (quarter, random.grid(-3, 3)),
+        "mixed" | "rounded" if random.one_in(2) => (quarter, random.grid(-3, 3)),
         _ => (random.rotation(), random.vector() * 4.0),
     };
     Pose::new(rotation, at).map_err(|e| error_message(&e))
@@ -580,9 +593,12 @@ fn upper_of(clearance: &AnyClearance) -> f64 {
     }
 }
 
-/// Returns the exact squared distance of two convex bodies; `None` for solids.
+/// Returns the exact squared distance of two convex bodies; `None` for solids and rounded bodies.
 fn squared_distance(p: &AnyPlaced, q: &AnyPlaced) -> Option<Ratio> {
     let (ByKind::Convex(p), ByKind::Convex(q)) = (p, q) else { return None };
+    if p.body.radius() + q.body.radius() != 0.0 {
+        return None;
+    }
     let [p, q] =
         [p, q].map(|one| place(one.pose.matrix(), one.pose.translation(), one.body.vertices()));
     Some(distance(&p, &q).square)

@@ -24,7 +24,7 @@ use crate::oracle::solids::proof::{MOST_PAIRS, approve};
 use crate::oracle::still;
 use crate::oracle::tracked::{Finding, Lanes};
 pub use motions::motion;
-pub use pairs::{among, depth, distance, min_gap, within};
+pub use pairs::{among, depth, distance, min_gap, rounded, within};
 
 /// Maximum number of points of a body. More points would only slow down a run.
 const MOST_POINTS: usize = 64;

@@ -1,4 +1,5 @@
 //! Judges distances and depths of rounded bodies in exact arithmetic. [`super::min_gap`] judges their casts.
+//! [`judge_all`] asks all questions about a cast.
 //!
 //! Notation. `d` is the exact distance of the cores, `R` the exact sum of the radii, `m` the exact depth of the cores.
 //! All numbers of an answer are taken as exact.
@@ -7,22 +8,22 @@
 //! - *Depth.* `R - d` if `d > 0`, `R + m` if the cores meet.
 //! - *Points.* Each is at its body's radius from the core, up to rounding.
 
-use colltrans::{ConvexPolyhedron, Depth, Distance, Pair, Pose, Within};
+use colltrans::{
+    Cast, CentralCast, ConvexPolyhedron, Depth, Distance, Grazing, Intersection, Outcome, Pair,
+    Pose, QueryError, Tracker, Within, WitnessPoints,
+};
 use glam::DVec3;
 
-use crate::oracle::check::Objection;
+use crate::oracle::check::{Objection, require};
 use crate::oracle::distance::{self, distance, distance_of_point};
 use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
+use crate::oracle::min_gap::GapJudge;
 use crate::oracle::nearest;
 
-macro_rules! require {
-    ($condition:expr, $($text:tt)+) => {
-        let holds: bool = $condition;
-        if !holds {
-            return Err(Objection(format!($($text)+)));
-        }
-    };
-}
+/// Maximum number of noises by which a contact point is off the surface. The bounds of a contact differ by at most 15
+/// noises over `n . d`. Therefore the points of the cores are within 15 noises of their supporting planes, and the
+/// segment between them is shorter along `n` than the sum of the radii by at most 15 noises.
+const CONTACT_NOISES: f64 = 32.0;
 
 /// The exact data of a pair of rounded bodies, with which answers are compared.
 #[derive(Debug)]
@@ -89,20 +90,25 @@ impl<'a> RoundedJudge<'a> {
         } else {
             require!(lower == 0.0, "a bound without a plane");
         }
-        self.check_surface_points([answer.on_moving, answer.on_fixed], upper)?;
+        self.check_surface_points([answer.on_moving, answer.on_fixed], upper == 0.0, 4.0)?;
         Ok((upper - lower) / self.noise)
     }
 
-    /// Checks that two points are on the surfaces of the bodies, or for a distance of 0 in them.
-    fn check_surface_points(&self, points: [DVec3; 2], apart: f64) -> Result<(), Objection> {
+    /// Checks that two points are on the surfaces of the bodies up to some noises, or in the bodies if `are_common`.
+    fn check_surface_points(
+        &self,
+        points: [DVec3; 2],
+        are_common: bool,
+        noises: f64,
+    ) -> Result<(), Objection> {
         let bodies = [
             (self.pair.moving(), self.pair.moving_pose()),
             (self.pair.fixed(), self.pair.fixed_pose()),
         ];
         for (point, (body, pose)) in points.into_iter().zip(bodies) {
             let off = distance_of_point(point, (body, &pose)).to_f64() - body.radius();
-            let is_there =
-                if apart == 0.0 { off <= 4.0 * self.noise } else { off.abs() <= 4.0 * self.noise };
+            let most = noises * self.noise;
+            let is_there = if are_common { off <= most } else { off.abs() <= most };
             require!(is_there, "a point is {off:e} off the surface");
         }
         Ok(())
@@ -162,5 +168,128 @@ impl<'a> RoundedJudge<'a> {
             require!(is_above, "upper bound {upper:e} of a depth of overlapping cores");
         }
         Ok((upper - lower) / self.noise)
+    }
+}
+
+/// Answers of all questions about a cast of rounded bodies.
+#[derive(Debug)]
+pub struct Answers {
+    /// The first contact.
+    pub outcome: Outcome,
+    /// The distance at the start.
+    pub distance: Distance,
+    /// The depth at the start.
+    pub depth: Depth,
+    /// The differences of the bounds of the contact, of the distance and of the depth, in noises.
+    pub widths: [f64; 3],
+}
+
+/// Asks all questions about a cast, from scratch and by a tracker, and judges the answers: first contact with its
+/// points, last contact, clearance, intersection, distance, depth, and whether the bodies are within `length` and
+/// within lengths near their distance. See [`RoundedJudge::check_depth`] for `compares`.
+///
+/// Returns `None` if a search ends without an answer.
+///
+/// # Errors
+/// [`Objection`] with the first answer that is wrong.
+pub fn judge_all<'a>(
+    cast: &Cast<'a>,
+    tracker: &mut Tracker<'a>,
+    length: f64,
+    compares: bool,
+) -> Result<Option<Answers>, Objection> {
+    match ask_all(cast, tracker, length, compares) {
+        Ok(answers) => Ok(Some(answers)),
+        Err(Failure::Open) => Ok(None),
+        Err(Failure::Wrong(objection)) => Err(objection),
+    }
+}
+
+/// Reason for which [`ask_all`] ends early.
+enum Failure {
+    /// A search ends without an answer.
+    Open,
+    /// An answer is wrong, or a query is refused.
+    Wrong(Objection),
+}
+
+impl From<QueryError> for Failure {
+    fn from(error: QueryError) -> Self {
+        match error {
+            QueryError::NotConverged { .. } => Self::Open,
+            _ => Self::Wrong(Objection(error.to_string())),
+        }
+    }
+}
+
+impl From<Objection> for Failure {
+    fn from(objection: Objection) -> Self {
+        Self::Wrong(objection)
+    }
+}
+
+fn ask_all<'a>(
+    cast: &Cast<'a>,
+    tracker: &mut Tracker<'a>,
+    length: f64,
+    compares: bool,
+) -> Result<Answers, Failure> {
+    let named = |who: &'static str| move |Objection(what)| Objection(format!("{who}: {what}"));
+    let judge = GapJudge::new(*cast);
+    let outcome = cast.first_contact()?;
+    let width = judge.check(&outcome).map_err(named("cast"))?.noises;
+    judge.check(&tracker.first_contact(cast)?).map_err(named("tracked cast"))?;
+    judge.check_clearance(&cast.clearance()?).map_err(named("clearance"))?;
+    judge.check_clearance(&tracker.clearance(cast)?).map_err(named("tracked clearance"))?;
+    let back = cast.reversed();
+    GapJudge::new(back).check(&back.first_contact()?).map_err(named("last contact"))?;
+
+    let [p, q] = [cast.moving().at(cast.moving_pose()), cast.fixed().at(cast.fixed_pose())];
+    let pair = Pair::new(p, q)?;
+    let judge = RoundedJudge::new(pair);
+    if let (Outcome::Contact(contact), 0.0) = (&outcome, cast.options().min_gap) {
+        let WitnessPoints { on_moving, on_fixed } = contact.witness_points(cast);
+        judge
+            .check_surface_points([on_moving, on_fixed], false, CONTACT_NOISES)
+            .map_err(named("contact points"))?;
+    }
+    for (who, found) in
+        [("intersection", cast.intersects()?), ("tracked intersection", tracker.intersects(cast)?)]
+    {
+        judge.check_intersection(cast, &found).map_err(named(who))?;
+    }
+    let distance = pair.distance()?;
+    let depth = pair.depth()?;
+    let widths = [
+        width,
+        judge.check(&distance).map_err(named("distance"))?,
+        judge.check_depth(&depth, compares)?,
+    ];
+    judge.check(&tracker.distance(&pair)?).map_err(named("tracked distance"))?;
+    let apart = (judge.cores.to_f64() - judge.radii.to_f64()).max(0.0);
+    for length in [0.0, apart, apart.next_up(), apart + 4.0 * judge.noise, length] {
+        judge.check_within(length, &pair.within(length)?).map_err(named("within"))?;
+    }
+    Ok(Answers { outcome, distance, depth, widths })
+}
+
+impl RoundedJudge<'_> {
+    /// Checks the answer whether the bodies intersect now, or are at most the minimum gap apart.
+    fn check_intersection(&self, cast: &Cast, found: &Intersection) -> Result<(), Objection> {
+        let CentralCast { direction, outcome, .. } = &found.evidence;
+        let through = cast.along(*direction).map_err(|e| Objection(e.to_string()))?;
+        GapJudge::new(through).check(outcome)?;
+        let beyond = self.cores.to_f64() - self.radii.to_f64() - cast.options().min_gap;
+        // Bodies that move by less than the rounding of the contact may be reported as meeting.
+        let rounding = match outcome {
+            Outcome::Contact(contact) | Outcome::Grazing(Grazing { contact, .. }) => {
+                contact.certificate.rounding
+            }
+            Outcome::Separated(_) => 0.0,
+        };
+        let slack = 16.0 * self.noise.max(f64::EPSILON * cast.options().min_gap);
+        let holds = if found.meets { beyond <= rounding + slack } else { beyond >= -slack };
+        require!(holds, "meets: {}, and the bodies are {beyond:e} apart", found.meets);
+        Ok(())
     }
 }

@@ -1,11 +1,11 @@
 //! Compares the library with exact arithmetic on many random settings.
 //!
 //! Each option selects a campaign: single casts with every solver, sequences of settings with trackers, nearly
-//! flat bodies, distances, scenes, casts with a minimum gap, bulk casts without rotation, motions of convex
-//! bodies or solids, arms on paths, bodies that rotate with little play, forged proofs, removal paths, and free
-//! directions of solids. Certificates are verified in exact arithmetic, and a sample is solved by the rational
-//! linear programme. Bodies are compared with their input points in exact arithmetic, so that answers are
-//! judged for the input.
+//! flat bodies, distances, scenes, casts with a minimum gap, rounded bodies, bulk casts without rotation,
+//! motions of convex bodies or solids, arms on paths, bodies that rotate with little play, forged proofs,
+//! removal paths, and free directions of solids. Certificates are verified in exact arithmetic, and a sample is
+//! solved by the rational linear programme. Bodies are compared with their input points in exact arithmetic, so
+//! that answers are judged for the input.
 //!
 //! `--help` lists the options. The exit code is 1 if there are disagreements.
 
@@ -18,6 +18,7 @@ mod motions;
 mod paths;
 mod play;
 mod proofs;
+mod rounded;
 mod sequences;
 mod solids;
 mod ways;
@@ -108,7 +109,7 @@ const fn campaign(
 }
 
 /// All campaigns. The first one is the default.
-const CAMPAIGNS: [Campaign; 19] = [
+const CAMPAIGNS: [Campaign; 20] = [
     campaign("--settings", settings, casts::COLUMNS, casts::examine),
     Campaign {
         counts: "QUERIES",
@@ -145,6 +146,7 @@ const CAMPAIGNS: [Campaign; 19] = [
         |asked, tally| among::examine(asked.family, asked.seed, tally),
     ),
     campaign("--min-gaps", min_gap_families, min_gap::COLUMNS, min_gap::examine),
+    campaign("--rounded", rounded_families, rounded::COLUMNS, rounded::examine),
     campaign("--motions", settings, motions::COLUMNS, motions::examine),
     campaign("--paths", || to_strings(&paths::FAMILIES), paths::COLUMNS, paths::examine),
     campaign("--play", || to_strings(&play::families()), play::COLUMNS, play::examine),
@@ -177,6 +179,11 @@ fn settings() -> Vec<String> {
 /// Returns the families of casts with a minimum gap.
 fn min_gap_families() -> Vec<String> {
     settings().into_iter().chain([min_gap::GLIDING.to_owned()]).collect()
+}
+
+/// Returns the families of rounded bodies.
+fn rounded_families() -> Vec<String> {
+    settings().into_iter().chain([rounded::SHAPES.to_owned()]).collect()
 }
 
 /// Returns the kinds of proofs.

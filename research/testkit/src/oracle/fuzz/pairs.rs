@@ -1,16 +1,16 @@
-//! Fuzz targets of queries without a direction, casts with a minimum gap, and scene queries.
+//! Fuzz targets of queries without a direction, casts with a minimum gap, rounded bodies, and scene queries.
 //!
 //! Bytes are read as for casts: the conversion of numbers, a byte (bits 0 and 1 select the rotated bodies, bit
 //! 2 selects solids), the bodies, their poses, and the parameters of the query.
 
 use colltrans::solid::SolidCast;
-use colltrans::{AnyBody, Cast, ObstacleId, Obstacles, Pair, Pose, SceneQuery};
+use colltrans::{AnyBody, Cast, ObstacleId, Obstacles, Pair, Pose, SceneQuery, Tracker};
 use glam::{DQuat, DVec3};
 
 use super::{MOST_JUDGED, Reader, read_setting, read_solid};
 use crate::oracle::settings::{Bodies, Setting};
 use crate::oracle::solids::{min_gap as solid_gap, nearest as solids};
-use crate::oracle::{among, min_gap as convex_gap, nearest};
+use crate::oracle::{among, min_gap as convex_gap, nearest, rounded as rounded_judge};
 use crate::tally::Tally;
 
 /// Maximum number of pairs of facets that are judged in rational arithmetic. More pairs would only slow down a
@@ -144,6 +144,29 @@ pub fn min_gap(bytes: &[u8]) {
             judge.check_clearance(&clearance).unwrap_or_else(|e| panic!("gap {gap:e}: {e}"));
         }
     }
+}
+
+/// Checks all answers about two convex bodies with radii from the bytes: see [`rounded_judge::judge_all`].
+///
+/// # Panics
+/// If an answer is wrong, or a search ends without one.
+pub fn rounded(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    let Some((setting, bodies)) = read_setting(&mut reader) else { return };
+    let vertices = bodies.moving.vertices().len() + bodies.fixed.vertices().len();
+    let mut read_length = || reader.number().abs() / 16.0;
+    let [r, s] = [read_length(), read_length()];
+    let (Ok(moving), Ok(fixed)) = (bodies.moving.rounded(r), bodies.fixed.rounded(s)) else {
+        return;
+    };
+    let bodies = Bodies { moving, fixed };
+    let (gap, length) = (read_length(), read_length());
+    let Ok(cast) = setting.query(&bodies).and_then(|cast| cast.with_min_gap(gap)) else { return };
+    let mut tracker = Tracker::new();
+    let length = if length.is_finite() { length } else { 0.0 };
+    let answers = rounded_judge::judge_all(&cast, &mut tracker, length, vertices <= MOST_COMPARED);
+    let answers = answers.unwrap_or_else(|e| panic!("radii {r:e} and {s:e}, gap {gap:e}: {e}"));
+    assert!(answers.is_some(), "radii {r:e} and {s:e}, gap {gap:e}: no answer");
 }
 
 /// Checks that a scene query after insertions, moves and removals gives the answers of queries of each

@@ -50,7 +50,9 @@ pub(super) fn contact_state_at(
             if !sampler.sample(&span, time).is_apart() {
                 state = ContactState::Undecided;
             }
-        } else if let Some((_, pairs)) = split_larger_node(at, nodes).filter(|_| !is_separated) {
+        } else if let Some((_, pairs)) =
+            split_larger_node(at, nodes.each_ref()).filter(|_| !is_separated)
+        {
             stack.extend(pairs);
         }
     }

@@ -159,7 +159,7 @@ impl<'s, 'a> TreeSearch<'s, 'a> {
             }
         } else if is_long && (turns || travel_ratio > MAX_TRAVEL_RATIO) {
             self.halve_interval(at, [from, to]);
-        } else if let Some((which, [first, second])) = split_larger_node(at, nodes) {
+        } else if let Some((which, [first, second])) = split_larger_node(at, nodes.each_ref()) {
             self.record_entry(Entry::Split(which));
             let (ends, snapshots) = ([from, to], self.snapshots.len() as u32);
             let open = |parts| OpenEntry { parts, ends, snapshots };
@@ -252,8 +252,8 @@ impl<'s, 'a> TreeSearch<'s, 'a> {
 pub(super) fn split_larger_node(at: [u32; 2], nodes: [&BoxNode; 2]) -> Option<(u8, [[u32; 2]; 2])> {
     let are_facets = nodes.map(|node| matches!(node.content, NodeContent::Facet(_)));
     let which = node_to_split(are_facets, |k| nodes[k].half.length())?;
-    let NodeContent::Children(first) = nodes[which].content else { return None };
-    Some((which as u8, [first, first + 1].map(|part| pair_with_node(at, which, part))))
+    let NodeContent::Children(children) = nodes[which].content else { return None };
+    Some((which as u8, children.map(|part| pair_with_node(at, which, part))))
 }
 
 /// Returns a plane that separates two parts throughout an interval, or `None`. The plane that separated the last pair

@@ -3,8 +3,15 @@
 //! The tree is that of the solid ([`tree`](colltrans_solid::body::tree)). Its leaves, which hold a few facets, are
 //! halved down to one facet. Boxes contain the shrunk vertices exactly, because the rounding errors of middle and half
 //! extents are added to the half extents.
+//!
+//! A node is computed when a search first needs it, from vertices that the solid stores for all amounts
+//! ([`Solid::exact_offset_box`]). Therefore a query computes no more nodes than it visits, unless the amount is so large
+//! that the stored vertices do not determine a box. The box is then that of both children.
+//!
+//! Nodes are numbered like those of the solid, followed by one number for each facet, and by one for each pair of
+//! facets, that of its first facet.
 
-use std::borrow::Cow;
+use std::cell::{OnceCell, RefCell};
 
 use glam::DVec3;
 
@@ -18,9 +25,22 @@ const EXTENT_ERROR: f64 = 4.0 * f64::EPSILON;
 #[derive(Debug, Clone)]
 pub(crate) struct SolidTree<'a> {
     pub(super) solid: &'a Solid,
-    vertices: Cow<'a, [DVec3]>,
+    /// Amount by which the solid is shrunk, and the displacements of its vertices for an amount of 1. Without them,
+    /// the solid is not shrunk.
+    amount: f64,
+    displacements: Option<&'a [DVec3]>,
     reach: f64,
-    nodes: Vec<BoxNode>,
+    known: RefCell<KnownNodes>,
+    /// All vertices, computed on first use.
+    vertices: OnceCell<Vec<DVec3>>,
+}
+
+/// The nodes that have been computed.
+#[derive(Debug, Clone)]
+struct KnownNodes {
+    /// Index of each node in `nodes`, plus one; 0 if it has not been computed.
+    places: Vec<u32>,
+    nodes: Vec<(Aabb, BoxNode)>,
 }
 
 /// A box around some facets, in the frame of the body.
@@ -34,8 +54,8 @@ pub(super) struct BoxNode {
 /// Content of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum NodeContent {
-    /// Two children; the index of the first.
-    Children(u32),
+    /// The indices of two children.
+    Children([u32; 2]),
     /// One facet, by its index in [`Solid::triangles`].
     Facet(u32),
 }
@@ -75,7 +95,9 @@ impl VertexHull for Facet {
 
 impl VertexHull for SolidTree<'_> {
     fn hull_vertices(&self) -> &[DVec3] {
-        &self.vertices
+        self.vertices.get_or_init(|| {
+            (0..self.solid.vertices().len() as u32).map(|v| self.vertex(v)).collect()
+        })
     }
 
     fn reach(&self) -> f64 {
@@ -90,35 +112,36 @@ impl VertexHull for SolidTree<'_> {
 impl<'a> SolidTree<'a> {
     /// Builds the tree of a solid, shrunk by `amount` in world units.
     pub(super) fn new(solid: &'a Solid, amount: f64) -> Self {
-        let vertices = if amount == 0.0 || !solid.has_offset() {
-            Cow::Borrowed(solid.vertices())
-        } else {
-            let field = &solid.offset_field().displacements;
-            let moved =
-                solid.vertices().iter().zip(field).map(|(v, x)| offset_vertex(*v, *x, amount));
-            Cow::Owned(moved.collect())
-        };
-        let reach = vertices.iter().map(|v| v.length()).fold(0.0, f64::max).next_up();
-        let mut tree = Self { solid, vertices, reach, nodes: Vec::new() };
-        tree.nodes = tree.build_nodes();
-        tree
+        let is_shrunk = amount != 0.0 && solid.has_offset();
+        let displacements = is_shrunk.then(|| &solid.offset_field().displacements[..]);
+        let reach = solid.offset_reach(amount).next_up();
+        // Zeroed memory is provided on first access, so that a large tree costs as much as the visited part of it.
+        let places = vec![0; solid.nodes().len() + 2 * solid.triangles().len()];
+        let known = RefCell::new(KnownNodes { places, nodes: Vec::new() });
+        Self { solid, amount, displacements, reach, known, vertices: OnceCell::new() }
     }
 
-    /// Returns a node by its index.
-    pub(super) fn node(&self, at: u32) -> &BoxNode {
-        &self.nodes[at as usize]
+    /// Returns a node by its index. The root has index 0.
+    pub(super) fn node(&self, at: u32) -> BoxNode {
+        let known = self.known.borrow();
+        let place = known.places[at as usize];
+        if place > 0 {
+            return known.nodes[place as usize - 1].1;
+        }
+        drop(known);
+        self.box_and_node(at).1
     }
 
     /// Returns all nodes in preorder: the index of the facet for a leaf, -1 for an inner node.
     #[cfg(feature = "json")]
     fn preorder(&self) -> Vec<i64> {
-        let (mut all, mut open) = (Vec::with_capacity(self.nodes.len()), vec![0]);
+        let (mut all, mut open) = (Vec::new(), vec![0]);
         while let Some(at) = open.pop() {
-            match self.node(at).content {
+            match self.content(at) {
                 NodeContent::Facet(triangle) => all.push(i64::from(triangle)),
-                NodeContent::Children(first) => {
+                NodeContent::Children([first, second]) => {
                     all.push(-1);
-                    open.extend([first + 1, first]);
+                    open.extend([second, first]);
                 }
             }
         }
@@ -127,78 +150,73 @@ impl<'a> SolidTree<'a> {
 
     /// Returns a facet by its index, shrunk.
     pub(super) fn facet(&self, triangle: u32) -> Facet {
-        let corners = self.solid.triangles()[triangle as usize].map(|v| self.vertices[v as usize]);
+        let corners = self.solid.triangles()[triangle as usize].map(|v| self.vertex(v));
         Facet::new(corners, self.solid.radius())
     }
 
-    /// Builds the nodes and their boxes.
-    fn build_nodes(&self) -> Vec<BoxNode> {
+    /// Returns a vertex, shrunk.
+    #[inline]
+    fn vertex(&self, vertex: u32) -> DVec3 {
+        let at = self.solid.vertices()[vertex as usize];
+        let by = self.displacements.map(|all| all[vertex as usize]);
+        by.map_or(at, |by| offset_vertex(at, by, self.amount))
+    }
+
+    /// Returns the exact box of a node, and the node.
+    fn box_and_node(&self, at: u32) -> (Aabb, BoxNode) {
+        let place = self.known.borrow().places[at as usize];
+        if place > 0 {
+            return self.known.borrow().nodes[place as usize - 1];
+        }
+        let content = self.content(at);
+        let is_stored = (at as usize) < self.solid.nodes().len();
+        let stored = is_stored.then(|| self.solid.exact_offset_box(at as usize, self.amount));
+        let bounds = match (stored.flatten(), content) {
+            (Some(bounds), _) => bounds,
+            (None, NodeContent::Facet(triangle)) => Aabb::from_points(self.facet(triangle).corners),
+            (None, NodeContent::Children([first, second])) => {
+                self.box_and_node(first).0.union(&self.box_and_node(second).0)
+            }
+        };
+        let Aabb { low, high } = bounds;
+        let middle = low + (high - low) * 0.5;
+        let half = (high - middle).max(middle - low);
+        let half = half + (half + middle.abs()) * EXTENT_ERROR;
+        let known = &mut *self.known.borrow_mut();
+        known.nodes.push((bounds, BoxNode { middle, half, content }));
+        known.places[at as usize] = known.nodes.len() as u32;
+        known.nodes[known.nodes.len() - 1]
+    }
+
+    /// Returns the children of a node, or its facet.
+    fn content(&self, at: u32) -> NodeContent {
         let own = self.solid.nodes();
-        let empty =
-            BoxNode { middle: DVec3::ZERO, half: DVec3::ZERO, content: NodeContent::Children(0) };
-        let mut nodes = vec![empty];
-        // Nodes that have no content yet, with the node of the solid or the facets that they are built from.
-        let mut open = vec![(0, NodeSource::Node(0))];
-        while let Some((at, part)) = open.pop() {
-            let parts = match part {
-                NodeSource::Node(k) if own[k].is_leaf() => NodeSource::split_range(own[k].facets()),
-                NodeSource::Node(k) => {
-                    let first = k + own[k].child_offset as usize;
-                    Some([NodeSource::Node(first), NodeSource::Node(first + 1)])
-                }
-                NodeSource::Facets(first, end) => NodeSource::split_range(first..end),
-            };
-            let Some(parts) = parts else {
-                nodes[at].content = NodeContent::Facet(part.first_facet(own) as u32);
-                continue;
-            };
-            let first = nodes.len();
-            nodes[at].content = NodeContent::Children(first as u32);
-            nodes.extend([empty; 2]);
-            open.extend([(first, parts[0]), (first + 1, parts[1])]);
+        let (count, facets) = (own.len() as u32, self.solid.triangles().len() as u32);
+        if let Some(node) = own.get(at as usize) {
+            if !node.is_leaf() {
+                let first = at + node.child_offset;
+                return NodeContent::Children([first, first + 1]);
+            }
+            return self.range_content(node.first_facet, node.facet_count);
         }
-        // Children have larger indices than their parents.
-        let mut boxes = vec![Aabb::EMPTY; nodes.len()];
-        for at in (0..nodes.len()).rev() {
-            boxes[at] = match nodes[at].content {
-                NodeContent::Facet(triangle) => Aabb::from_points(self.facet(triangle).corners),
-                NodeContent::Children(first) => {
-                    boxes[first as usize].union(&boxes[first as usize + 1])
-                }
-            };
-            let Aabb { low, high } = boxes[at];
-            let middle = low + (high - low) * 0.5;
-            let half = (high - middle).max(middle - low);
-            (nodes[at].middle, nodes[at].half) =
-                (middle, half + (half + middle.abs()) * EXTENT_ERROR);
+        let below = at - count;
+        if below < facets {
+            self.range_content(below, 1)
+        } else {
+            self.range_content(below - facets, 2)
         }
-        nodes
-    }
-}
-
-/// Source from which a node is built.
-#[derive(Clone, Copy)]
-enum NodeSource {
-    /// A node of the solid.
-    Node(usize),
-    /// Facets from the first index to before the second.
-    Facets(usize, usize),
-}
-
-impl NodeSource {
-    /// Returns both halves of a range of facets. Returns `None` for a single facet.
-    fn split_range(range: std::ops::Range<usize>) -> Option<[Self; 2]> {
-        let middle = range.start + range.len() / 2;
-        let halves = [Self::Facets(range.start, middle), Self::Facets(middle, range.end)];
-        (range.len() > 1).then_some(halves)
     }
 
-    /// Returns the index of the first facet.
-    fn first_facet(self, own: &[colltrans_solid::body::tree::Node]) -> usize {
-        match self {
-            Self::Node(k) => own[k].facets().start,
-            Self::Facets(first, _) => first,
+    /// Returns the content of a node with consecutive facets.
+    fn range_content(&self, first: u32, facet_count: u32) -> NodeContent {
+        if facet_count == 1 {
+            return NodeContent::Facet(first);
         }
+        let (nodes, facets) =
+            (self.solid.nodes().len() as u32, self.solid.triangles().len() as u32);
+        let part = |first: u32, count: u32| nodes + first + if count == 2 { facets } else { 0 };
+        let half = facet_count / 2;
+        NodeContent::Children([part(first, half), part(first + half, facet_count - half)])
     }
 }
 
@@ -222,5 +240,94 @@ impl ProofFacets {
         let count = tree.solid.triangles().len() as u32;
         let corners = (0..count).map(|at| tree.facet(at).corners.map(|v| v.to_array()));
         Self { numbers, corners: corners.collect(), tree: tree.preorder() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::super::search_span;
+    use super::*;
+    use crate::answer::MotionSteps;
+    use crate::solid::search::SearchMode;
+    use crate::span::split_into_spans;
+    use crate::{Motion, MotionCast};
+    use colltrans_convex::body::Pose;
+
+    /// Builds a torus with waves, or with flat sides and corners if `side` is a multiple of four and `waves` is 0.
+    fn torus(side: u32, waves: f64) -> Solid {
+        let at = |k: u32| TAU * f64::from(k) / f64::from(side);
+        let corner = |k: u32| {
+            let (u, v) = (at(k / side), at(k % side));
+            let wave = waves * (7.0 * u + 5.0 * v).sin() * (3.0 * v).cos();
+            let square = |x: f64| if waves == 0.0 { x.clamp(-0.6, 0.6) } else { x };
+            let r = 3.0 + square(v.cos()) * (1.0 + wave);
+            DVec3::new(r * u.cos(), r * u.sin(), square(v.sin()) * (1.0 + wave))
+        };
+        let vertices: Vec<DVec3> = (0..side * side).map(corner).collect();
+        let next = |k: u32| if (k + 1) % side == 0 { k + 1 - side } else { k + 1 };
+        let over = |k: u32| (k + side) % (side * side);
+        let facets: Vec<[u32; 3]> = (0..side * side)
+            .flat_map(|k| [[k, over(k), next(k)], [over(k), over(next(k)), next(k)]])
+            .collect();
+        Solid::from_mesh(&vertices, &facets).expect("a solid")
+    }
+
+    /// Returns the box of all facets below a node, by a pass over them, after comparing the boxes of all nodes below.
+    fn check_boxes(tree: &SolidTree, at: u32, count: &mut usize) -> Aabb {
+        let expected = match tree.content(at) {
+            NodeContent::Facet(triangle) => Aabb::from_points(tree.facet(triangle).corners),
+            NodeContent::Children(children) => {
+                let [first, second] = children.map(|child| check_boxes(tree, child, count));
+                first.union(&second)
+            }
+        };
+        *count += 1;
+        assert_eq!(tree.box_and_node(at).0, expected, "node {at}");
+        expected
+    }
+
+    #[test]
+    fn boxes_equal_those_of_all_facets() {
+        for solid in [torus(40, 0.0), torus(33, 0.15), torus(8, 0.3)] {
+            for amount in [0.0, 1e-300, 1e-14, 1e-9, 1e-5, 1e-3, 0.03, 0.4, 5.0] {
+                let tree = SolidTree::new(&solid, amount);
+                // From the root down, so that no box is computed from those of its children that are known.
+                let (mut open, mut all) = (vec![0], Vec::new());
+                while let Some(at) = open.pop() {
+                    all.push((at, tree.box_and_node(at).0));
+                    if let NodeContent::Children(children) = tree.content(at) {
+                        open.extend(children);
+                    }
+                }
+                let mut count = 0;
+                check_boxes(&tree, 0, &mut count);
+                assert_eq!((count, all.len()), (2 * solid.triangles().len() - 1, count));
+                let far = tree.hull_vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+                assert_eq!(tree.reach(), far.next_up());
+            }
+        }
+    }
+
+    #[test]
+    fn search_computes_only_visited_nodes() {
+        let solid = torus(192, 0.1);
+        let start = Pose::from_translation(DVec3::new(1.0, 9.5, 0.5)).expect("a pose");
+        let swing = Motion::rotation_about(start, DVec3::new(9.0, 9.0, 0.0), DVec3::Z, 1.5);
+        let (swing, rest) = (swing.expect("a motion"), Motion::at_rest(Pose::IDENTITY));
+        let cast = MotionCast::between_any(solid.with_motion(&swing), solid.with_motion(&rest));
+        let cast = cast.expect("a cast");
+        for tolerance in [0.0, 1e-11, 1e-6] {
+            let trees = cast.shrunk_trees(tolerance);
+            let spans = split_into_spans(trees.each_ref(), cast.motions(), 0.0);
+            let mut steps = MotionSteps::default();
+            let (found, _) = search_span(&spans[0], SearchMode::FirstContact, &mut steps);
+            assert!(found.is_some());
+            let known: usize = trees.map(|tree| tree.known.into_inner().nodes.len()).iter().sum();
+            // The search computes the nodes of the pairs that it visits, here 4,000 of 290,000 in both trees.
+            let most = (2 * steps.nodes as usize).min(solid.triangles().len() / 10);
+            assert!(known <= most, "{tolerance}: {known} nodes, {} visits", steps.nodes);
+        }
     }
 }

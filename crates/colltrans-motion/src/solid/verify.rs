@@ -86,11 +86,12 @@ fn check_cover(
             }
             Entry::Split(which) => {
                 let which = usize::from(which);
-                let NodeContent::Children(first) = trees[which].node(at[which]).content else {
+                let NodeContent::Children([first, second]) = trees[which].node(at[which]).content
+                else {
                     return Err(number);
                 };
                 let part = |k: u32| if which == 0 { [k, at[1]] } else { [at[0], k] };
-                stack.extend([(part(first + 1), ends), (part(first), ends)]);
+                stack.extend([(part(second), ends), (part(first), ends)]);
             }
             Entry::Separated(plane) => {
                 let parts = [0, 1].map(|k| TreePart::at_node(trees[k], at[k]));

@@ -73,7 +73,7 @@ impl TreePart {
         let node = tree.node(at);
         match node.content {
             NodeContent::Facet(triangle) => Self::Facet(tree.facet(triangle)),
-            NodeContent::Children(_) => Self::Box(*node),
+            NodeContent::Children(_) => Self::Box(node),
         }
     }
 

@@ -4,6 +4,7 @@
 //! - [`shells`] finds its connected parts, and reverses those that are inside out.
 //! - [`tree`] builds the tree of boxes that searches descend.
 //! - [`shrink`] computes offsets on first use, and [`self_intersection`] finds walls that are too thin for an offset.
+//!   [`extremes`] stores which vertices determine the boxes of offset solids.
 //! - [`round`] sweeps a solid by a ball: its radius.
 //! - [`faces`] joins triangles to polygonal faces on first use; [`bodies`] assigns cavities to the shells around
 //!   them.
@@ -14,6 +15,7 @@ pub(crate) mod cuts;
 pub(crate) mod edges;
 mod error;
 pub(crate) mod exact;
+mod extremes;
 mod faces;
 mod openness;
 mod polygon;
@@ -38,6 +40,7 @@ use colltrans_convex::body::{
 };
 use colltrans_kernel::motion::Motion;
 pub use error::SolidError;
+use extremes::OffsetExtremes;
 use faces::Faces;
 pub use report::{Shell, ShellKind, SolidReport};
 pub use shells::ray_crossing;
@@ -96,6 +99,8 @@ pub struct Solid {
     input_counts: [u32; 2],
     report: SolidReport,
     shrinking: OnceLock<OffsetField>,
+    /// Computed when a motion of an offset solid is first requested.
+    extremes: OnceLock<Box<OffsetExtremes>>,
     /// Computed when a feature is first requested.
     faces: OnceLock<Box<Faces>>,
     groups: Box<Groups>,
@@ -342,6 +347,7 @@ impl Solid {
             input_counts: surface.input_counts,
             report,
             shrinking: OnceLock::new(),
+            extremes: OnceLock::new(),
             faces,
             groups: Box::default(),
             kept: DerivedDataSlot::default(),
@@ -517,6 +523,7 @@ impl Solid {
             + self.spans.capacity() * size_of::<ShellBounds>()
             + self.report.shells.capacity() * size_of::<Shell>()
             + self.shrinking.get().map_or(0, OffsetField::heap_bytes)
+            + self.extremes.get().map_or(0, |all| size_of::<OffsetExtremes>() + all.heap_bytes())
             + self.faces.get().map_or(0, |faces| size_of::<Faces>() + faces.heap_bytes())
             + size_of::<Groups>()
             + self.groups.heap_bytes()

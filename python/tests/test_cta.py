@@ -31,7 +31,7 @@ def test_planar_problems_are_solved_to_the_exit() -> None:
     cold = contact(solver=Cta(cold=True)).steps
     assert cold.iterations > whole.iterations
     early = contact(solver=Cta(cuts="centroid")).steps
-    assert early.planar_problems >= whole.planar_problems
+    assert early.planar_problems != whole.planar_problems
 
 
 def test_many_rows_take_the_options_of_one() -> None:

@@ -1,6 +1,7 @@
 //! The distance of two solids, and its proof.
 //!
-//! - Surfaces: a best-first search compares pairs of facets. Its cover proves that no pair of facets is nearer.
+//! - Surfaces: a best-first search compares pairs of facets. Its cover proves that no pair of facets is nearer. If no
+//!   proof is requested, the hulls of convex bodies give the facets and a separating plane without a search.
 //! - Bodies: they meet if facets have a common point or if a shell lies inside the other body. Both are decided
 //!   exactly. Common points are searched only if the distance of the surfaces may be 0, enclosed shells only if the
 //!   surfaces are apart.
@@ -14,7 +15,7 @@ use glam::DVec3;
 
 use crate::body::{AsSolid, Solid};
 use crate::cast::tolerance::least_tolerance_from;
-use crate::cast::{Claim, Cover};
+use crate::cast::{Claim, Cover, nearest_facets};
 use crate::solve::nearest::search::{DistanceSearch, SearchEnd, proven_bound};
 #[cfg(feature = "serde")]
 use crate::solve::nearest::weighted_points;
@@ -99,6 +100,8 @@ struct NearestFacets {
     spot: Option<NearestPoints>,
     /// Lower bound on the distance of all facets.
     lower: f64,
+    /// Whether a plane separates the bodies, so that neither is inside the other.
+    are_separated: bool,
     /// Cover of all pairs of nodes, if a proof was requested and the lower bound is positive.
     cover: Option<Cover<Apart>>,
     steps: SolidSteps,
@@ -261,7 +264,7 @@ impl SolidPairSearch for Pair<'_, Solid> {
             beyond: high + 0.125 * scene.noise,
             enough: low - triangle::LENGTH_NOISES * scene.noise,
         };
-        let NearestFacets { spot, lower, cover, mut steps } =
+        let NearestFacets { spot, lower, cover, mut steps, .. } =
             search_nearest(self, &scene, until, prove && until.beyond.is_finite());
         let near_of = |spot: NearestPoints| near_less_radii(&self.bodies, spot.solid_near(&scene));
         let near = spot.map(near_of);
@@ -393,13 +396,20 @@ fn near_less_radii(bodies: &TwoBodies<'_, Solid>, near: SolidNear) -> SolidNear 
     }
 }
 
-/// Searches for the nearest facets, and records the cover if `prove` is set.
+/// Finds the nearest facets: those of convex bodies from the distance of their hulls unless `prove` is set, others by a
+/// search. Records the cover of the search if `prove` is set.
 fn search_nearest(
     pair: &Pair<'_, Solid>,
     scene: &PairFrame,
     until: SearchEnd,
     prove: bool,
 ) -> NearestFacets {
+    let hulls = if prove { None } else { nearest_facets(pair, scene) };
+    if let Some(found) = hulls {
+        let steps = SolidSteps { leaves: found.leaves, ..SolidSteps::default() };
+        let (spot, lower) = (Some(found.spot), found.lower);
+        return NearestFacets { spot, lower, are_separated: true, cover: None, steps };
+    }
     let mut cuts = HashMap::new();
     let mut search = DistanceSearch::new(scene, until, |nodes, reason| {
         if prove {
@@ -409,7 +419,8 @@ fn search_nearest(
     let ((found, lower), steps) = (search.find_nearest(), search.steps);
     // If the search ended early, some pairs have no reason, and the bound is 0.
     let cover = (prove && lower > 0.0).then(|| Cover::new([pair.moving(), pair.fixed()], &cuts));
-    NearestFacets { spot: found.map(NearestPoints::from), lower, cover, steps }
+    let spot = found.map(NearestPoints::from);
+    NearestFacets { spot, lower, are_separated: false, cover, steps }
 }
 
 /// Returns the distance of the bodies from the result for their surfaces.
@@ -420,7 +431,11 @@ fn distance_answer(
 ) -> Distance<Solid> {
     let origin = pair.bodies.translations[0];
     let mut steps = nearest.steps;
-    let place = find_common_point(scene, nearest.lower, &mut steps);
+    let place = if nearest.are_separated {
+        None
+    } else {
+        find_common_point(scene, nearest.lower, &mut steps)
+    };
     let spot = nearest.spot.unwrap_or_else(|| NearestPoints::from_triangles(scene, [0, 0]));
     let (near, points) = if let Some(place) = place {
         (SolidNear::Meeting(place), shared_points(scene, place))

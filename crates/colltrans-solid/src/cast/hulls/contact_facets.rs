@@ -12,11 +12,12 @@ use crate::solve::scene::{PairFrame, PlacedBody};
 use crate::solve::search::{Aim, GapSearch, LeastGap, SLACK};
 use crate::solve::separate::{HEIGHTS, max_height_along};
 use colltrans_convex::answer::{Contact, Outcome};
+use colltrans_convex::setting::VertexPair;
 
 /// Maximum number of facets of one body that are compared.
 const MAX_FACETS: usize = 4;
 /// Distance of the contact point from a side, in noises, up to which the facet across counts too.
-const NEAR_NOISES: f64 = 64.0;
+pub(super) const NEAR_NOISES: f64 = 64.0;
 /// Depth of an overlap, as a share of the size, up to which the facets around the contact are tested.
 const MAX_SHALLOW_DEPTH: f64 = 1e-3;
 /// Maximum number of vertices that are compared for the farthest one.
@@ -43,7 +44,8 @@ impl Hulls<'_> {
             Outcome::Contact(contact) if contact.certificate.upper >= 0.0 => {
                 blocking_pair(scene, &self.bodies, contact, limit, leaves)
             }
-            Outcome::Contact(_) => (plane_margin(scene, &self.bodies, self.last_contact()?) > 0.0)
+            Outcome::Contact(_) => (contact_margin(scene, &self.bodies, self.last_contact()?)
+                > 0.0)
                 .then_some(ContactGuess::Free),
             _ => None,
         }
@@ -114,8 +116,18 @@ impl Surface<'_> {
 
 /// Computes a lower bound of the distance of the offset bodies along the normal of a contact of their hulls. It is
 /// not positive if no plane with that normal certainly separates them.
-fn plane_margin(scene: &PairFrame, [p, q]: &[Surface; 2], contact: &Contact) -> f64 {
-    let (normal, pair) = (contact.certificate.normal, contact.certificate.pairs[0]);
+fn contact_margin(scene: &PairFrame, bodies: &[Surface; 2], contact: &Contact) -> f64 {
+    plane_margin(scene, bodies, contact.certificate.normal, contact.certificate.pairs[0])
+}
+
+/// Computes a lower bound of the distance of the offset bodies along a normal. It is not positive if no plane with that
+/// normal certainly separates them. `pair` has a highest vertex of the moving hull and a lowest one of the fixed hull.
+pub(super) fn plane_margin(
+    scene: &PairFrame,
+    [p, q]: &[Surface; 2],
+    normal: DVec3,
+    pair: VertexPair,
+) -> f64 {
     let moving = p.max_height(scene, &scene.moving, normal, pair.moving.0);
     let fixed = q.max_height(scene, &scene.fixed, -normal, pair.fixed.0);
     normal.dot(scene.fixed.offset[0]) - fixed - moving - HEIGHTS * scene.noise
@@ -139,7 +151,7 @@ pub(super) fn gap_lower_bound(
         }
     }
     // One noise covers the component of the normal along the direction.
-    let margin = plane_margin(scene, bodies, contact) - scene.noise;
+    let margin = contact_margin(scene, bodies, contact) - scene.noise;
     (margin > 0.0).then(|| margin * length / proof.normal.dot(scene.setting.direction))
 }
 
@@ -207,7 +219,7 @@ fn facets_around_contact(
 }
 
 /// Facets of one body around a point.
-struct FacetGroup {
+pub(super) struct FacetGroup {
     facets: [u32; MAX_FACETS],
     count: usize,
 }
@@ -215,7 +227,12 @@ struct FacetGroup {
 impl FacetGroup {
     /// Collects the facet at a point, and the facets across its sides within the distance `near` of the point. The
     /// search begins at the hull vertex `corner`. `None` if no facet is found.
-    fn new(surface: &Surface, corner: u32, point: &SurfacePoint, near: f64) -> Option<Self> {
+    pub(super) fn new(
+        surface: &Surface,
+        corner: u32,
+        point: &SurfacePoint,
+        near: f64,
+    ) -> Option<Self> {
         let triangle = surface.facet_at(corner, point, near)?;
         let mut group = Self { facets: [triangle; MAX_FACETS], count: 1 };
         for (k, inside) in surface.distances_inside(triangle, point, near).into_iter().enumerate() {
@@ -227,7 +244,7 @@ impl FacetGroup {
         Some(group)
     }
 
-    fn facets(&self) -> &[u32] {
+    pub(super) fn facets(&self) -> &[u32] {
         &self.facets[..self.count]
     }
 }

@@ -1,14 +1,16 @@
-//! Casts of convex solids by the cast of their convex hulls, before any search.
+//! Casts and distances of convex solids by those of their convex hulls, before any search.
 //!
 //! - [`transferred`] uses the answer of the hulls' cast, if its certificate holds for the solids too.
 //! - [`contact_facets`] uses only the normal and the points of the hulls' contact. It proves a lower bound by a plane
 //!   with that normal, or by the bounding boxes. The gap of two facets around the points gives the upper bound.
+//! - [`nearest`] does the same for distances.
 //!
 //! One of these decides nearly all casts of convex solids; the others are searched. The second method is valid for
 //! any rounding of the hulls and for solids that are not exactly convex. Derivations:
 //! `docs/theory/hulls-of-solids.md`.
 
 mod contact_facets;
+mod nearest;
 mod surface;
 mod transferred;
 
@@ -25,6 +27,7 @@ use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::Setting;
 use colltrans_convex::solve::options::Options;
 pub(super) use contact_facets::ContactGuess;
+pub(crate) use nearest::nearest_facets;
 use surface::{Surface, SurfacePoint};
 
 /// Maximum height of a vertex above the plane of an adjacent facet in a body that counts as convex, as a share of

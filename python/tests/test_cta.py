@@ -64,7 +64,8 @@ def test_options_are_values_and_invalid_ones_are_refused() -> None:
     assert repr(Cta()) == "Cta(start='center', until='exit')"
     assert pickle.loads(pickle.dumps(nearly)) == nearly != Cta()
     fast = Cta(start="guess", cuts="centroid", across_cells=True, cold=True)
-    assert repr(fast) == "Cta(start='guess', until='exit', cuts='centroid', across_cells=True, cold=True)"
+    options = "start='guess', until='exit', cuts='centroid', across_cells=True, cold=True"
+    assert repr(fast) == f"Cta({options})"
     assert pickle.loads(pickle.dumps(fast)) == fast != Cta(start="guess")
     with pytest.raises(QueryError, match='there is no cut "corner"'):
         Cta(cuts="corner")  # type: ignore[arg-type]

@@ -105,7 +105,7 @@ pub(crate) fn outline_contact(
     Some(OutlineContact { normal, touching, pair: Some(pair) })
 }
 
-/// Moves a point of a rim towards the centre of the body, by the distance of a rim of `n / 2` corners from their circle.
+/// Moves a point of a rim towards the centre of the body, by the sagitta of a side of a polygon with `n / 2` corners.
 fn inside_rims(body: &ConvexPolyhedron, point: DVec3) -> DVec3 {
     let corners = 0.5 * body.vertices().len() as f64;
     let sagitta = 0.5 * (std::f64::consts::PI / corners).powi(2);

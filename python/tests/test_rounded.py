@@ -29,6 +29,7 @@ from colltrans import (
     depth,
     distance,
     first_contact,
+    free_directions,
     within,
 )
 
@@ -182,6 +183,107 @@ def test_what_is_not_defined_is_refused() -> None:
             ConvexPolyhedron.sphere(radius)
     with pytest.raises(BuildError, match="rounded"):
         BALL.grown(0.5)
-    solid = Solid.read(ROOT / "data" / "bolt.stl")
-    with pytest.raises((BuildError, QueryError), match="rounded"):
-        clearance(BALL, solid, DOWN, moving_pose=[0, 0, 40])
+    round_step = STEP.rounded(0.25)
+    for refused in (
+        lambda: round_step.shrunk(0.1),
+        lambda: Solid.from_pieces([round_step, CUBE]),
+        lambda: free_directions(round_step, CUBE, fixed_pose=[9, 0, 0]),
+        lambda: STEP.rounded(-1.0),
+    ):
+        with pytest.raises((BuildError, QueryError), match="radius"):
+            refused()
+
+
+#: A floor with a tower of height 3.
+STEP = Solid.from_pieces(
+    [
+        ConvexPolyhedron.cuboid([0, 0, 0], [4, 2, 1]),
+        ConvexPolyhedron.cuboid([0, 0, 0], [2, 2, 3]),
+    ]
+)
+
+
+def checked(answer: Any, partly: bool = True) -> Any:
+    """Checks the proof of an answer with both checkers, and returns the file."""
+    text = answer.proof_json()
+    report = check.check(text)
+    assert report.holds or report.unchecked
+    assert report.partly == partly
+    return json.loads(text)
+
+
+def test_rounded_solids_add_radii() -> None:
+    step = STEP.rounded(0.25)
+    assert step.radius == 0.25 and "radius 0.25" in repr(step)
+    for x, y, expected in [(3.5, 1.0, 7.25), (1.0, 1.0, 5.25), (2.5, 1.0, 6 - math.sqrt(0.3125))]:
+        stop: Any = clearance(BALL, step, DOWN, moving_pose=[x, y, 9], tolerance=0)
+        assert stop.distance == pytest.approx(expected, abs=1e-11)
+    near = distance(BALL, step, moving_pose=[3.5, 1, 4])
+    assert near.lower <= 2.25 <= near.upper < 2.25 + 1e-12
+    assert near.on_moving[2] == pytest.approx(3.5) and near.on_fixed[2] == pytest.approx(1.25)
+    assert within(BALL, step, 2.26, moving_pose=[3.5, 1, 4]).closer is True
+    assert within(BALL, step, 2.24, moving_pose=[3.5, 1, 4]).closer is False
+    pill = ConvexPolyhedron.capsule([-1, 0, 0], [1, 0, 0], 0.25)
+    apart = distance(pill, step, moving_pose=[4, 1, 2.5])
+    assert apart.lower <= 0.5 <= apart.upper
+    # A mesh that is not convex.
+    bolt = Solid.read(ROOT / "data" / "bolt.stl")
+    point = distance(ConvexPolyhedron([[0, 0, 0]]), bolt, moving_pose=[0, 0, 40])
+    ball = distance(BALL, bolt, moving_pose=[0, 0, 40])
+    assert ball.upper == pytest.approx(point.upper - 0.5, abs=1e-10)
+
+
+def test_proofs_of_rounded_solids_state_the_radius() -> None:
+    step = STEP.rounded(0.25)
+    answers: list[tuple[Any, float]] = [
+        (clearance(BALL, step, DOWN, moving_pose=[9, 1, 9]), 1),
+        (distance(BALL, step, moving_pose=[3.5, 1, 4]), -1),
+    ]
+    for answer, way in answers:
+        file = checked(answer)
+        assert [body["rounded"]["radius"] for body in file["bodies"]] == [0.5, 0.25]
+        for body in (0, 1):
+            changed = copy.deepcopy(file)
+            changed["bodies"][body]["rounded"]["radius"] += way * 1e-6
+            with pytest.raises(check.RefusedError):
+                check.check(json.dumps(changed))
+        changed = copy.deepcopy(file)
+        del changed["bodies"][0]["rounded"]["radius"]
+        with pytest.raises(check.NoProofError):
+            check.check(json.dumps(changed))
+
+
+def test_motions_of_rounded_solids_are_checked() -> None:
+    swing = Motion.turn([0, 0, 0], [0, 1, 0], degrees=90, pose=[0, 0, 4])
+    floor = Solid.from_pieces(
+        [
+            ConvexPolyhedron.cuboid([-9, -9, -1], [9, 9, 0]),
+            ConvexPolyhedron.cuboid([-9, -9, -1], [-8, 9, 3]),
+        ]
+    )
+    met: Any = first_contact(BALL, floor.rounded(0.125), swing, tolerance=0)
+    expected = math.acos(0.625 / 4) / (math.pi / 2)
+    assert met.lower - 1e-11 <= expected <= met.upper + 1e-11 and met.upper - met.lower < 1e-9
+    file = json.loads(met.proof_json())
+    report = check.check(json.dumps(file))
+    assert any("radii of 0.625" in line for line in report.holds), report
+    for way in (-1, 1):
+        changed = copy.deepcopy(file)
+        changed["bodies"][1]["rounded"]["radius"] += way * 1e-6
+        with pytest.raises(check.RefusedError):
+            check.check(json.dumps(changed))
+
+
+def test_obstacles_may_be_rounded_solids() -> None:
+    scene = Obstacles()
+    names = [scene.add(STEP.rounded(0.1 * k), [0, 0, 9.0 * k]) for k in range(1, 5)]
+    nearest: Any = scene.nearest(BALL, [1, 1, 0])
+    assert nearest.obstacle == names[0]
+    assert nearest.upper == pytest.approx(9 - 0.1 - 0.5)
+
+
+def test_copies_of_rounded_solids_keep_the_radius() -> None:
+    step = STEP.rounded(0.25).rounded(0.125)
+    for again in (copy.copy(step), copy.deepcopy(step), pickle.loads(pickle.dumps(step))):
+        assert again.radius == 0.375
+        np.testing.assert_array_equal(again.vertices, step.vertices)

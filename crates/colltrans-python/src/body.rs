@@ -262,8 +262,8 @@ impl ConvexPolyhedron {
     /// Returns the body swept by a ball: all points at a distance of at most ``radius`` from it.
     ///
     /// Vertices, faces and features of the result are those of the body without radius. Nothing is tessellated.
-    /// Casts, distances, depths, motions and :class:`Obstacles` of convex bodies accept rounded bodies; queries
-    /// about solids refuse them.
+    /// Casts, distances, depths, motions and :class:`Obstacles` accept rounded bodies, together with convex bodies
+    /// and with solids.
     ///
     /// Parameters
     /// ----------

@@ -285,7 +285,7 @@ impl Obstacles {
     /// Raises
     /// ------
     /// QueryError
-    ///     A pair has a solid and a convex body that is rounded or whose facets do not form a surface. Or a search
+    ///     A pair has a solid and a convex body whose facets do not form a surface. Or a search
     ///     ended without an answer.
     #[pyo3(signature = (body, pose=None, *, ignore=HashSet::new()),
         text_signature = "($self, body, pose=None, *, ignore=())")]

@@ -29,6 +29,8 @@ enum Source {
     Pieces(Vec<Piece>),
     /// Another solid with facets moved inwards by this length, or outwards if it is negative.
     Moved(Py<Solid>, f64),
+    /// Another solid swept by a ball of this radius.
+    Rounded(Py<Solid>, f64),
 }
 
 /// A body that can be treated as a solid.
@@ -79,13 +81,7 @@ impl Piece {
     /// Returns the pieces of a union, or the body itself.
     pub(crate) fn pieces(&self) -> Result<Vec<&colltrans::Solid>, colltrans::solid::SolidError> {
         match self {
-            Self::Solid(solid) => match &*solid.get().source {
-                Source::Pieces(pieces) => {
-                    let parts: Result<Vec<_>, _> = pieces.iter().map(Self::pieces).collect();
-                    Ok(parts?.concat())
-                }
-                Source::Mesh(..) | Source::Moved(..) => Ok(vec![self.solid()?]),
-            },
+            Self::Solid(solid) => solid.get().pieces(),
             Self::Convex(_) => Ok(vec![self.solid()?]),
         }
     }
@@ -191,6 +187,18 @@ pub(crate) struct Solid {
 type MeshAndReport<'py> = (Bound<'py, PyAny>, Vec<Bound<'py, PyAny>>, bool, f64, f64, Vec<String>);
 
 impl Solid {
+    /// Returns the pieces of a union, or the solid itself. Those of a rounded solid are the pieces of its core.
+    fn pieces(&self) -> Result<Vec<&colltrans::Solid>, colltrans::solid::SolidError> {
+        match &*self.source {
+            Source::Pieces(pieces) => {
+                let parts: Result<Vec<_>, _> = pieces.iter().map(Piece::pieces).collect();
+                Ok(parts?.concat())
+            }
+            Source::Rounded(of, _) => of.get().pieces(),
+            Source::Mesh(..) | Source::Moved(..) => Ok(vec![&self.solid]),
+        }
+    }
+
     fn of_mesh(mesh: Mesh, options: BodyOptions) -> Result<Self, BodyError> {
         let Loaded { body: solid, precision, notes } = body::solid(&mesh, &options)?;
         let notes = notes.iter().map(ToString::to_string).collect();
@@ -235,9 +243,11 @@ getters!(Solid, |it| {
     /// float: The maximum distance of vertices in the file that represent the same point, a length. The
     /// default tolerance of a query follows from it. It is 0 for a solid that was not read from a file.
     precision: f64 = it.precision;
-    /// float: The volume, in the cube of the unit of length.
+    /// float: The radius of the ball that sweeps the solid (:meth:`rounded`); 0 unless it is rounded.
+    radius: f64 = it.solid.radius();
+    /// float: The volume, in the cube of the unit of length, without the radius of a rounded solid.
     volume: f64 = it.solid.volume();
-    /// ndarray of shape (2, 3): Smallest and largest coordinates.
+    /// ndarray of shape (2, 3): Smallest and largest coordinates of the vertices.
     bounds(py): PyResult<Bound<'py, PyArray2<f64>>> = {
         let bounds = it.solid.bounds();
         table(py, [bounds.low, bounds.high].map(|v| v.to_array()))
@@ -409,6 +419,41 @@ impl Solid {
         Self::moved(slf, amount, false)
     }
 
+    /// Returns the solid swept by a ball: all points at a distance of at most ``radius`` from it.
+    ///
+    /// Vertices, triangles and features of the result are those of the solid without radius. Nothing is
+    /// tessellated. Casts, distances, motions, paths and :class:`Obstacles` accept rounded solids. A tolerance
+    /// offsets the solid without radius inwards.
+    ///
+    /// Parameters
+    /// ----------
+    /// radius : float
+    ///     It is added to the radius of a solid that is rounded already.
+    ///
+    /// Returns
+    /// -------
+    /// Solid
+    ///
+    /// Raises
+    /// ------
+    /// BuildError
+    ///     The radius is negative, not finite or out of range.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron, Solid, distance
+    /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    /// >>> step = Solid.from_pieces([cube, ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 4])]).rounded(0.25)
+    /// >>> ball = ConvexPolyhedron.sphere(0.5)
+    /// >>> round(distance(ball, step, moving_pose=[3, 0.5, 0.5]).upper, 9)
+    /// 1.25
+    fn rounded(slf: &Bound<'_, Self>, radius: f64) -> PyResult<Self> {
+        let Self { solid, precision, notes, .. } = slf.get();
+        let solid = solid.clone().rounded(radius).or_raise()?;
+        let source = Arc::new(Source::Rounded(slf.clone().unbind(), radius));
+        Ok(Self { solid, precision: *precision, notes: notes.clone(), source })
+    }
+
     fn __reduce__<'py>(
         &self,
         py: Python<'py>,
@@ -418,6 +463,9 @@ impl Solid {
             Source::Pieces(pieces) => {
                 let pieces: Vec<_> = pieces.iter().map(|piece| piece.object(py)).collect();
                 Ok((class.getattr("from_pieces")?, (pieces,).into_pyobject(py)?))
+            }
+            Source::Rounded(of, radius) => {
+                Ok((class.getattr("rounded")?, (of, *radius).into_pyobject(py)?))
             }
             Source::Moved(of, by) => Ok((class.getattr("_moved")?, (of, *by).into_pyobject(py)?)),
             Source::Mesh(mesh, BodyOptions { open, scale, .. }) => {
@@ -475,6 +523,9 @@ impl Solid {
 
     fn __repr__(&self) -> String {
         let (v, t) = (self.solid.vertices().len(), self.solid.triangles().len());
-        format!("Solid({v} vertices, {t} triangles)")
+        match self.solid.radius() {
+            0.0 => format!("Solid({v} vertices, {t} triangles)"),
+            r => format!("Solid({v} vertices, {t} triangles, radius {r:?})"),
+        }
     }
 }

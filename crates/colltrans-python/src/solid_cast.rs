@@ -46,7 +46,7 @@ use crate::solid::Piece;
 /// QueryError
 ///     The direction is zero or out of range, a length is negative, or the tolerance leaves nothing of a body.
 /// BuildError
-///     A convex body is rounded, or its facets do not form a surface.
+///     The facets of a convex body do not form a surface.
 /// PoseError, InputError
 ///     An argument does not describe a pose, or is not an array of that shape.
 ///

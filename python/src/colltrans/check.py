@@ -30,6 +30,8 @@ Notation: moving body ``P``, fixed body ``Q``, direction ``d``, all points in th
 - *A minimum gap* ``g`` replaces contact by a distance: ``g |n|`` is subtracted from what planes
   prove, and at the upper bound the weighted means of the pairs are at most ``g`` apart. For solids
   it is not checked where two facets are.
+- *Radii* of rounded bodies are added to the gap: all planes, points and facets are those of the
+  bodies without radius.
 - *Distance.* ``min_Q n.q - max_P n.p`` over all vertices proves a lower bound. The weighted means
   of the pairs, one point of each body, prove an upper bound. For a distance of 0 the differences of
   the pairs enclose the origin.
@@ -282,11 +284,15 @@ def check_closed(points: list[Vector], facets: list[tuple[int, int, int]]) -> No
         raise RefusedError("a surface not marked as open has no facet with an area")
 
 
+#: The kinds of bodies.
+_KINDS = "convex, pieces, rounded"
+
+
 @dataclass(frozen=True)
 class Body:
     """Points in the body frame and the pose ``R x + t``; a solid also has facets.
 
-    A convex body is the hull of its points, swept by a ball of the radius.
+    A convex body is the hull of its points. Both kinds are swept by a ball of the radius.
     """
 
     points: list[Vector]
@@ -307,7 +313,9 @@ class Body:
             )
             points = [place(v) for v in listed(content["vertices"])]
             described(points, content)
-        elif kind == "pieces":
+        elif kind in ("pieces", "rounded"):
+            if kind == "rounded":
+                content = fields(content, "pieces radius")["pieces"]
             for each in listed(content):
                 piece = fields(each, "vertices triangles", "open")
                 if not isinstance(each.get("open", False), bool):
@@ -324,8 +332,8 @@ class Body:
                 if not each.get("open", False):
                     check_closed(points, facets[begin:])
         else:
-            raise NoProofError(f"unknown kind of body {kind!r}; known kinds: convex, pieces")
-        if not points or (kind == "pieces" and not facets):
+            raise NoProofError(f"unknown kind of body {kind!r}; known kinds: {_KINDS}")
+        if not points or (kind != "convex" and not facets):
             raise NoProofError("a body has no points or no facets")
         return points, facets
 
@@ -347,7 +355,8 @@ class Body:
     @staticmethod
     def radius_of(shape: Any) -> Fraction:
         """Returns the radius of a rounded body, 0 for other bodies."""
-        said = shape["convex"].get("radius") if "convex" in shape else None
+        ((kind, content),) = shape.items()
+        said = None if kind == "pieces" else content.get("radius")
         radius = number(0.0 if said is None else said)
         if radius != 0 and not _RANGE[0] <= radius <= _RANGE[1]:
             raise RefusedError(f"a radius of {float(radius)!r} is not from 2^-200 to 2^200")
@@ -778,17 +787,17 @@ def clearance(
     # The lower bound is null if nothing stops the body.
     if tolerance < 0 or (certificate["lower"] is not None and number(certificate["lower"]) < 0):
         raise RefusedError("a tolerance, or a bound, is negative")
-    plane, stop = claim["separation"], claim["stop"]
+    plane, stop, swept = claim["separation"], claim["stop"], radii(moving, fixed)
     if plane is not None:
         plane = fields(plane, "normal margin")
         normal, margin = vector(plane["normal"]), number(plane["margin"])
-        is_apart = are_shadows_apart(moving, fixed, d, normal, margin)
-        proven = shadows_apart(moving, fixed, d, normal)
+        is_apart = are_shadows_apart(moving, fixed, d, normal, margin + swept)
+        proven = shadows_apart(moving, fixed, d, normal) - float(swept)
         if margin <= min_gap or (tolerance == 0 and not is_apart):
             raise RefusedError(f"the plane proves a margin of {proven!r}, not {float(margin)!r}")
         # A gap of the nominal bodies, if the shrunk bodies have a larger margin.
         gap = margin if is_apart else Fraction(proven) * (1 - 8 * _U)
-        if gap > min_gap and are_shadows_apart(moving, fixed, d, normal, gap):
+        if gap > min_gap and are_shadows_apart(moving, fixed, d, normal, gap + swept):
             report.holds.append(
                 f"the bodies {never_near(min_gap)}: a gap of {float(gap)!r} is between them"
             )
@@ -797,11 +806,12 @@ def clearance(
     if (stop is None) != (certificate["stop"] is None):
         raise RefusedError("the certificate and the claim do not agree about what stops the body")
     stop = None if stop is None else fields(stop, "facets translation")
-    if stop is not None and min_gap:
+    if stop is not None and min_gap + swept:
         named = listed(stop["facets"], 2)
         at = [whole(k, len(of.facets)) for k, of in zip(named, (moving, fixed), strict=True)]
         translation_of(stop)
-        report.unchecked.append(f"where facets {at[0]} and {at[1]} are {float(min_gap)!r} apart")
+        core_gap = float(min_gap + swept)
+        report.unchecked.append(f"where facets {at[0]} and {at[1]} are {core_gap!r} apart")
     elif stop is not None:
         facets(moving, fixed, d, stop, tolerance, report)
     if tolerance:
@@ -983,7 +993,7 @@ def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> Non
             for body, k in zip((moving, fixed), named, strict=True)
         ]
         p, q = (mean(c, w) for c, w in zip(corners, listed(near["weights"], 2), strict=True))
-        apart(p, q, number(near["distance"]), report)
+        apart(p, q, number(near["distance"]), report, radii(moving, fixed))
     else:
         report.partly = True
         report.unchecked.append("that the bodies have a point in common")
@@ -2847,7 +2857,7 @@ def shells(facets: list[Triangle]) -> list[Vector]:
 
 def open_facets(shape: Any) -> list[bool]:
     """Returns for each facet of a body whether it belongs to an open surface."""
-    pieces = shape.get("pieces", [])
+    pieces = shape["rounded"]["pieces"] if "rounded" in shape else shape.get("pieces", [])
     return [piece.get("open", False) for piece in pieces for _ in listed(piece["triangles"])]
 
 
@@ -2873,10 +2883,13 @@ def solid_motion(file: File, movers: list[Any], asked: Any, claim: Any, report: 
     min_gap = asked["min_gap"]
     if min_gap < 0:
         raise NoProofError("the minimum gap is negative")
-    all_spans = spans(movers, [[_ZERO], [_ZERO]], min_gap)
+    swept = sum((Body.radius_of(file.bodies[of["body"]]) for of in movers), Fraction())
+    # The facets are those of the bodies without radius.
+    all_spans = spans(movers, [[_ZERO], [_ZERO]], min_gap + swept)
     meet = "meet" if min_gap == 0 else f"are as near as {float(min_gap)!r}"
     moved = float(max(side.moved for side in parts))
     of = f"the facets, moved by at most {moved:.3g}," if moved else "the facets"
+    of = f"{of} with radii of {float(swept)!r} together" if swept else of
     claimed = listed(proof["spans"])
     if proof["start"] == "assumed":
         raise RefusedError("it is not proven whether the solids overlap at the start of the motion")
@@ -3752,6 +3765,12 @@ def check(text: str) -> Report:
             raise NoProofError(f"the version is {content.get('version')!r}, not {VERSION}")
         fields(content, "format version bodies placement query statement")
         file, report = File.read(content), Report()
+        rounded = [
+            shape for shape in file.bodies if "convex" not in shape and Body.radius_of(shape)
+        ]
+        if file.asked not in ("cast", "pair", "motions") and rounded:
+            report.unchecked.append(f"the {file.asked}, whose solids are rounded")
+            return report
         for k, body in enumerate(file.bodies):
             check_faces(report, k, body.get("convex"))
         kind, claim = one_of(content["statement"], *CLAIMS)
@@ -3841,6 +3860,8 @@ def pair(file: File, kind: str, claim: Any, report: Report) -> None:
         has_open(file.bodies[of["body"]]) for of in file.placement
     ):
         raise NoProofError("free directions are not claimed for open surfaces")
+    if kind == "free_directions" and radii(moving, fixed):
+        raise NoProofError("free directions are not claimed for rounded solids")
     PLACED[kind](moving, fixed, claim, report)
 
 

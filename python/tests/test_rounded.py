@@ -218,11 +218,11 @@ def test_rounded_solids_add_radii() -> None:
     for x, y, expected in [(3.5, 1.0, 7.25), (1.0, 1.0, 5.25), (2.5, 1.0, 6 - math.sqrt(0.3125))]:
         stop: Any = clearance(BALL, step, DOWN, moving_pose=[x, y, 9], tolerance=0)
         assert stop.distance == pytest.approx(expected, abs=1e-11)
-    near = distance(BALL, step, moving_pose=[3.5, 1, 4])
-    assert near.lower <= 2.25 <= near.upper < 2.25 + 1e-12
-    assert near.on_moving[2] == pytest.approx(3.5) and near.on_fixed[2] == pytest.approx(1.25)
-    assert within(BALL, step, 2.26, moving_pose=[3.5, 1, 4]).closer is True
-    assert within(BALL, step, 2.24, moving_pose=[3.5, 1, 4]).closer is False
+    near = distance(BALL, step, moving_pose=[1, 1, 9])
+    assert near.lower <= 5.25 <= near.upper < 5.25 + 1e-12
+    assert near.on_moving[2] == pytest.approx(8.5) and near.on_fixed[2] == pytest.approx(3.25)
+    assert within(BALL, step, 5.26, moving_pose=[1, 1, 9]).closer is True
+    assert within(BALL, step, 5.24, moving_pose=[1, 1, 9]).closer is False
     pill = ConvexPolyhedron.capsule([-1, 0, 0], [1, 0, 0], 0.25)
     apart = distance(pill, step, moving_pose=[4, 1, 2.5])
     assert apart.lower <= 0.5 <= apart.upper

@@ -183,7 +183,7 @@ impl Solid {
             self.is_shell_closed(shell_of[*t]) && (before[shell] < 0.0) != (after[shell] < 0.0)
         };
         let mut facets: Vec<InputFacet> = (0..self.triangles.len())
-            .filter(|t| mirrored(t) || inverted(t))
+            .filter(|t| !self.is_without_area(*t) && (mirrored(t) || inverted(t)))
             .chain(self_intersection::crossing_facets(self, &moved, &shell_of, &before))
             .map(|t| self.facet_index[t])
             .collect();

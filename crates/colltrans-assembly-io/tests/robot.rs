@@ -8,7 +8,7 @@ use colltrans::motion::path::{Joint, JointPath, PathBody, PathCast, PathOutcome}
 use colltrans::{AnyBody, Pose};
 use colltrans_assembly_io::ReadError;
 use colltrans_assembly_io::read::{ReadOptions, read_disabled_pairs, read_robot};
-use colltrans_assembly_io::robot::{JointKind, Robot, RobotError, Table, body_from_mesh};
+use colltrans_assembly_io::robot::{Cell, JointKind, Robot, RobotError, Table, body_from_mesh};
 use colltrans_mesh::body::{BodyOptions, load};
 use glam::{DAffine3, DVec3};
 
@@ -196,13 +196,297 @@ fn unsupported_robots_are_rejected_with_reason() {
     assert!(error_text(two.clone() + &mimic).contains("it mimics k, which is not a moving joint"));
     let none = "<link name=\"a\"/>".to_owned();
     assert!(error_text(none).contains("none of its 1 links has collision geometry"));
-    let capsule = "<link name=\"a\"><collision><geometry><capsule radius=\"1\" length=\"1\"/></geometry>\
-                   </collision></link>";
-    assert!(error_text(two + capsule).contains("duplicate link name"));
+    let of_shape = |shape: &str| {
+        format!("<link name=\"a\"><collision><geometry>{shape}</geometry></collision></link>")
+    };
+    let capsule = of_shape("<capsule radius=\"1\" length=\"1\"/>");
+    assert!(error_text(two + &capsule).contains("duplicate link name"));
+    let negative = error_text(of_shape("<sphere radius=\"-1\"/>"));
+    assert!(negative.contains("link a: line 1: a sphere has sizes [-1.0]"), "{negative}");
+    let missing = error_text(of_shape("<capsule radius=\"1\"/>"));
+    assert!(missing.contains("<capsule> has no attribute length"), "{missing}");
+    let unknown = error_text(of_shape("<cone radius=\"1\"/>"));
+    assert!(unknown.contains("unknown geometry cone; accepted: mesh, box"), "{unknown}");
+}
+
+/// Returns the time at which the only pair of a robot's cell first meets on a path of one joint, from 0 to 1.
+fn first_contact_time(robot: Robot, until: f64) -> f64 {
+    let path = JointPath::at_unit_times(vec![vec![0.0], vec![until]]).expect("a path");
+    let cell = Cell::new(robot, Vec::new(), Some(&[])).expect("a cell");
+    let cast = cell.path_cast(&path, 0.0).expect("a cast");
+    let PathOutcome::Contact(contact) = cast.first_contact().expect("an answer") else {
+        panic!("no contact")
+    };
+    assert_eq!(cast.verify(&contact.proof).expect("a proof"), [contact.lower, contact.upper]);
+    assert!(contact.upper - contact.lower < 1e-11);
+    0.5 * (contact.lower + contact.upper) * until
+}
+
+#[test]
+fn spheres_and_capsules_are_exact() {
+    let link = |name: &str, shape: &str, origin: &str| {
+        format!(
+            "<link name=\"{name}\"><collision><origin {origin}/><geometry>{shape}</geometry></collision></link>"
+        )
+    };
+    let slides = joint_element("j", "prismatic", ["a", "b"], "<axis xyz=\"0 0 -1\"/>");
+    let ball = "<sphere radius=\"0.5\"/>";
+    let robot = |capsule: &str| {
+        let text = link("a", capsule, "rpy=\"0 1.5707963267948966 0\"")
+            + &link("b", ball, "xyz=\"0.25 0 3\"");
+        read_text(&(text + &slides)).expect("a robot")
+    };
+    // The capsule lies along x, so that it is met as a cylinder.
+    let found = robot("<capsule radius=\"0.25\" length=\"1\"/>");
+    assert!(found.notes().is_empty(), "{:?}", found.notes());
+    assert!((first_contact_time(found, 3.0) - 2.25).abs() < 1e-10);
+    // The ball meets a half sphere: its centre is 3/4 from the end of the axis, a quarter aside.
+    let time = first_contact_time(robot("<capsule radius=\"0.25\" length=\"0.001\"/>"), 3.0);
+    assert!((time - (3.0 - (0.5625_f64 - 0.2495 * 0.2495).sqrt())).abs() < 1e-10, "{time}");
+    // A cylinder stays a polyhedron, which is noted.
+    let noted = robot("<cylinder radius=\"0.25\" length=\"1\"/>");
     assert!(
-        error_text(capsule.to_owned())
-            .contains("replace the capsule by a cylinder and two spheres")
+        noted.notes()[0].contains("a cylinder of radius 0.25 is replaced"),
+        "{:?}",
+        noted.notes()
     );
+}
+
+#[test]
+fn round_links_are_checked_against_solids() {
+    let text = "<link name=\"a\"><collision><geometry><mesh filename=\"frame.off\"/></geometry></collision></link>\
+                <link name=\"b\"><collision><origin xyz=\"0 0 3\"/><geometry><sphere radius=\"0.5\"/></geometry>\
+                </collision></link>"
+        .to_owned();
+    let slides = joint_element("j", "prismatic", ["a", "b"], "<axis xyz=\"0 0 -1\"/>");
+    let folder = TemporaryFolder::new();
+    let file = folder.path().join("robot.urdf");
+    std::fs::write(&file, format!("<robot name=\"r\">{text}{slides}</robot>")).unwrap();
+    // A prism with a notch: two steps, of the heights 1 and 2.
+    let profile = [(-2.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.25, 2.0), (0.25, 1.0), (-2.0, 1.0)];
+    let corners = |y: f64| profile.map(|(x, z)| format!("{x} {y} {z}")).join("\n");
+    let sides: Vec<String> =
+        (0..6).map(|k| format!("4 {} {k} {} {}", (k + 1) % 6, k + 6, (k + 1) % 6 + 6)).collect();
+    let fan = [[0, 1, 4], [1, 2, 3], [1, 3, 4], [0, 4, 5]];
+    let ends: Vec<String> = fan
+        .iter()
+        .flat_map(|[a, b, c]| {
+            [format!("3 {a} {b} {c}"), format!("3 {} {} {}", c + 6, b + 6, a + 6)]
+        })
+        .collect();
+    let parts = [corners(-2.0), corners(2.0), sides.join("\n"), ends.join("\n")];
+    let off = format!("OFF\n12 14 0\n{}\n", parts.join("\n"));
+    std::fs::write(folder.path().join("frame.off"), off).unwrap();
+    let robot = read_robot(&file, &ReadOptions::default()).expect("a robot");
+    assert!(matches!(robot.links()[0].bodies[..], [AnyBody::Solid(_)]));
+    // The ball, with its centre over the lower step, meets the edge of the upper one.
+    let expected = 3.0 - (2.0 + (0.25_f64 - 0.0625).sqrt());
+    assert!((first_contact_time(robot, 3.0) - expected).abs() < 1e-9);
+}
+
+/// Reads a robot from an MJCF file with these contents.
+fn read_mjcf(text: &str) -> Result<Robot, ReadError> {
+    let folder = TemporaryFolder::new();
+    let file = folder.path().join("robot.xml");
+    std::fs::write(&file, format!("<mujoco model=\"m\">{text}</mujoco>")).unwrap();
+    read_robot(&file, &ReadOptions::default())
+}
+
+/// An arm with two hinges of one body, a slide, defaults and a geom for display.
+const MJCF_ARM: &str = r#"
+<compiler angle="degree" eulerseq="zyx"/>
+<default><geom size="0.1"/><default class="shown"><geom contype="0" conaffinity="0"/></default></default>
+<worldbody>
+  <geom type="box" size="1 1 0.1" pos="0 0 -0.1"/>
+  <body name="upper" pos="0 0 0.5" euler="90 0 0">
+    <joint name="yaw" axis="0 0 1" range="-90 45"/>
+    <joint name="pitch" type="hinge" axis="0 1 0" pos="0.25 0 0"/>
+    <geom type="capsule" fromto="0 0 0 1 0 0"/>
+    <geom type="mesh" mesh="cover" class="shown"/>
+    <site name="mark"/>
+    <frame pos="1 0 0">
+      <body name="tip" pos="0.5 0 0" quat="0.5 0.5 0.5 0.5">
+        <joint name="out" type="slide" axis="1 0 0"/>
+        <geom/>
+      </body>
+    </frame>
+  </body>
+</worldbody>"#;
+
+#[test]
+fn mjcf_bodies_are_placed_by_their_joints() {
+    let arm = read_mjcf(MJCF_ARM).expect("a robot");
+    assert_eq!(arm.name(), "m");
+    let links: Vec<_> =
+        arm.links().iter().map(|link| (&*link.name, link.frame, link.bodies.len())).collect();
+    assert_eq!(links, [("world", None, 1), ("upper", Some(1), 1), ("tip", Some(2), 1)]);
+    let joints: Vec<_> = arm.joints().iter().map(|j| (&*j.name, j.kind, j.limits)).collect();
+    let quarter = std::f64::consts::FRAC_PI_2;
+    assert_eq!(
+        joints,
+        [
+            ("yaw", JointKind::Revolute, Some([-quarter, 0.5 * quarter])),
+            ("pitch", JointKind::Continuous, None),
+            ("out", JointKind::Prismatic, None),
+        ]
+    );
+    let path = JointPath::at_unit_times(vec![vec![0.3, -0.7, 0.2]]).expect("a path");
+    let bodies = arm
+        .links()
+        .iter()
+        .map(|link| PathBody { frame: link.frame, placed: link.bodies[0].at(Pose::IDENTITY) });
+    let cast = PathCast::new(arm.mechanism(), &path, bodies.collect(), vec![]).expect("a cast");
+    let start = colltrans::motion::path::PathPlace { row: 0, share: 0.0 };
+    let place = |body: usize| {
+        let AnyBody::Convex(of) = &arm.links()[body].bodies[0] else { panic!("not convex") };
+        assert_eq!(of.radius(), 0.1);
+        let pose = cast.world_pose(body, start);
+        let at = DAffine3::from_mat3_translation(pose.matrix(), pose.translation());
+        of.vertices().iter().map(|v| at.transform_point3(*v)).collect::<Vec<_>>()
+    };
+    // The same chain of joints, multiplied by hand.
+    let upper = DAffine3::from_translation(DVec3::Z * 0.5)
+        * DAffine3::from_rotation_z(quarter)
+        * DAffine3::from_rotation_z(0.3)
+        * DAffine3::from_translation(DVec3::X * 0.25)
+        * DAffine3::from_rotation_y(-0.7)
+        * DAffine3::from_translation(DVec3::X * -0.25);
+    let near = |points: &[DVec3], wanted: DVec3| points.iter().any(|p| p.distance(wanted) < 1e-13);
+    for end in [DVec3::ZERO, DVec3::X] {
+        assert!(near(&place(1), upper.transform_point3(end)));
+    }
+    // The quaternion maps x to y, along which the tip slides.
+    assert!(near(&place(2), upper.transform_point3(DVec3::new(1.5, 0.2, 0.0))));
+}
+
+/// A chain of bodies in all forms of orientations.
+const MJCF_CHAIN: &str = r#"
+  <compiler angle="degree" eulerseq="zyx"/>
+  <default>
+    <geom size="0.05"/>
+    <default class="arm">
+      <geom type="capsule" size="0.04"/>
+      <joint type="slide" axis="1 1 0"/>
+    </default>
+  </default>
+  <worldbody>
+    <geom type="box" size="0.2 0.3 0.1" pos="0.1 0 -0.4" axisangle="1 2 3 40"/>
+    <body name="first" pos="0 0 0.2" euler="20 -30 40" childclass="arm">
+      <joint name="a" type="hinge" axis="0 1 1" pos="0.1 0 0"/>
+      <geom fromto="0 0 0 0.5 0 0.1"/>
+      <frame pos="0.5 0 0" zaxis="1 0 1">
+        <body name="second" xyaxes="1 1 0 0 1 1">
+          <joint name="b" type="hinge" axis="1 0 0"/>
+          <joint name="c" pos="0 0.2 0"/>
+          <geom type="sphere" pos="0.2 0 0"/>
+          <geom size="0.03 0.2" pos="0 0.1 0" quat="1 2 3 4"/>
+          <body name="third" pos="0.3 0 0" quat="0.5 0.5 -0.5 0.5">
+            <joint name="d" type="hinge" axis="0 0 1" pos="-0.1 0 0" range="-90 90"/>
+            <geom class="main" pos="0 0 0.4"/>
+            <geom class="main" contype="0" conaffinity="0" size="3"/>
+          </body>
+        </body>
+      </frame>
+    </body>
+  </worldbody>
+"#;
+
+#[test]
+fn mjcf_bodies_are_where_mujoco_places_them() {
+    let chain = read_mjcf(MJCF_CHAIN).expect("a robot");
+    let path = JointPath::at_unit_times(vec![vec![0.3, -0.7, 0.2, 0.5]]).expect("a path");
+    let cell = Cell::new(chain, Vec::new(), None).expect("a cell");
+    let cast = cell.path_cast(&path, 0.0).expect("a cast");
+    let start = colltrans::motion::path::PathPlace { row: 0, share: 0.0 };
+    let place = |(k, placed): (usize, colltrans::AnyPlaced<'_>)| {
+        let colltrans::AnyPlaced::Convex(placed) = placed else { panic!("not convex") };
+        let pose = cast.world_pose(k, start);
+        let at = DAffine3::from_mat3_translation(pose.matrix(), pose.translation());
+        let points = placed.body.vertices().iter().map(|v| at.transform_point3(*v));
+        points.map(|point| (cell.names()[k].clone(), point)).collect::<Vec<_>>()
+    };
+    let found: Vec<(String, DVec3)> = cast.bodies().enumerate().flat_map(place).collect();
+    // Centres of spheres, ends of axes and a corner, computed by MuJoCo 4.0.0 (`mj_kinematics`).
+    let wanted = [
+        ("world", [0.151336560555, 0.352473885014, -0.285428110194]),
+        ("first", [0.358975974228, 0.190916352567, 0.508696294473]),
+        ("first", [0.012493481388, -0.026781676746, 0.204463735092]),
+        ("second", [0.198161995332, 0.551881266189, 0.584979598797]),
+        ("second", [0.264373154546, 0.223641554989, 0.485607699414]),
+        ("second", [0.064743844588, 0.443446870140, 0.753625911551]),
+        ("third", [0.457296514534, 0.699780274360, 0.313253592809]),
+    ];
+    for (body, point) in wanted {
+        let point = DVec3::from_array(point);
+        assert!(
+            found.iter().any(|(name, at)| name == body && at.distance(point) < 1e-11),
+            "{body} {point}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn mjcf_geoms_have_the_sizes_of_the_format() {
+    let extent = |geom: &str| {
+        let robot = read_mjcf(&format!("<worldbody><geom {geom}/></worldbody>")).expect(geom);
+        let AnyBody::Convex(body) = &robot.links()[0].bodies[0] else { panic!("not convex") };
+        let (low, high) = body
+            .vertices()
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+        (high - low + DVec3::splat(2.0 * body.radius())).to_array().map(|x| (x * 1e3).round() / 1e3)
+    };
+    assert_eq!(extent("size=\"1\""), [2.0; 3]);
+    assert_eq!(extent("type=\"box\" size=\"1 2 3\""), [2.0, 4.0, 6.0]);
+    assert_eq!(extent("type=\"box\" size=\"1\" fromto=\"0 0 0 0 5 0\""), [2.0, 5.0, 2.0]);
+    assert_eq!(extent("type=\"capsule\" size=\"1 2\""), [2.0, 2.0, 6.0]);
+    assert_eq!(extent("type=\"capsule\" size=\"1\" fromto=\"0 0 0 4 0 0\""), [6.0, 2.0, 2.0]);
+    let cylinder = extent("type=\"cylinder\" size=\"1 2\" zaxis=\"1 0 0\"");
+    assert!(cylinder[0] == 4.0 && (2.0..2.01).contains(&cylinder[1]), "{cylinder:?}");
+}
+
+#[test]
+fn unsupported_mjcf_elements_are_rejected_with_their_place() {
+    let error_text = |text: &str| read_mjcf(text).unwrap_err().to_string();
+    let of_geom =
+        |geom: &str| error_text(&format!("<worldbody>\n<geom name=\"g\" {geom}/></worldbody>"));
+    for (geom, reason) in [
+        (
+            "type=\"ellipsoid\" size=\"1 2 3\"",
+            "unsupported type ellipsoid; accepted: sphere, capsule, box",
+        ),
+        ("type=\"plane\" size=\"1 1 1\"", "unsupported type plane"),
+        ("mesh=\"m\"", "unsupported type mesh"),
+        ("type=\"box\" size=\"1 2\"", "size=\"1 2\" is invalid; expected 3 numbers"),
+        ("size=\"-1\"", "a sphere has sizes [-1.0]; accepted: finite and positive"),
+        ("type=\"box\"", "missing attribute size"),
+        ("size=\"1\" pos=\"0 0\"", "pos=\"0 0\" of <geom> is invalid; expected 3 numbers"),
+        ("size=\"1\" quat=\"0 0 0 0\"", "quat=\"0 0 0 0\" is not an orientation"),
+        (
+            "size=\"1\" quat=\"1 0 0 0\" euler=\"0 0 0\"",
+            "several orientations: quat, euler; accepted: one",
+        ),
+        ("size=\"1\" class=\"none\"", "unknown class none"),
+    ] {
+        let text = of_geom(geom);
+        assert!(text.contains(&format!("MJCF: line 2: geom g: {reason}")), "{geom}: {text}");
+        assert!(text.contains("robot.xml"), "{text}");
+    }
+    let of_joint = |joint: &str| {
+        error_text(&format!(
+            "<worldbody><body name=\"b\">{joint}<geom size=\"1\"/></body></worldbody>"
+        ))
+    };
+    assert!(of_joint("<freejoint/>").contains("unsupported type free; accepted: hinge, slide"));
+    assert!(of_joint("<joint type=\"ball\"/>").contains("unsupported type ball"));
+    assert!(of_joint("<joint axis=\"0 0 0\"/>").contains("invalid axis"));
+    assert!(of_joint("<joint ref=\"1\"/>").contains("unsupported ref"));
+    assert!(of_joint("<composite/>").contains("unsupported in body"));
+    let twice = "<worldbody><body name=\"b\"/><body name=\"b\"/></worldbody>";
+    assert!(error_text(twice).contains("body b: duplicate name"));
+    assert!(error_text("<include file=\"other.xml\"/>").contains("unsupported element include"));
+    assert!(error_text("<compiler eulerseq=\"abc\"/>").contains("accepted: three of xyzXYZ"));
+    assert!(error_text("<worldbody/>").contains("none of its 0 bodies has a geom that collides"));
 }
 
 #[test]

@@ -93,7 +93,7 @@ pub(crate) enum Command {
     Motion(Box<MotionArguments>),
     /// Compute which links of a robot first touch each other or a scene on a path
     ///
-    /// The bounds of the time are proven for the whole path, not for samples. The robot is a URDF file. A row of
+    /// The bounds of the time are proven for the whole path, not for samples. The robot is a URDF or MJCF file. A row of
     /// the path has one value for each joint, in radians or metres.
     #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[PATH_NOTES]))]
     Path(Box<PathArguments>),

@@ -13,6 +13,8 @@ mod gltf;
 #[cfg(feature = "files")]
 mod manifest;
 #[cfg(feature = "files")]
+mod mjcf;
+#[cfg(feature = "files")]
 mod robot;
 #[cfg(feature = "files")]
 mod shapes;
@@ -218,11 +220,13 @@ fn unknown_source(path: &Path) -> ReadError {
     if is_step { ReadError::Step { path } } else { ReadError::UnknownSource { path } }
 }
 
-/// Reads a robot from a URDF file: links with their bodies, and joints.
+/// Reads a robot from a URDF or MJCF file: links with their bodies, and joints. The root element selects the format.
+///
+/// The links of an MJCF file are its bodies and the `world`. Its geoms are spheres, capsules, boxes and cylinders.
 ///
 /// # Errors
 /// [`ReadError`] if a file cannot be read, with the file and the place, if a joint has not exactly one degree
-/// of freedom (except fixed joints), or if the robot has no geometry.
+/// of freedom (except fixed joints), if a geom has another shape, or if the robot has no geometry.
 #[cfg(feature = "files")]
 pub fn read_robot(
     path: impl AsRef<Path>,

@@ -2,8 +2,8 @@
 //!
 //! - The frame of a link is that of the joint above it, or the world.
 //! - The angles of the file are converted once to matrices, whose entries define the frames from then on.
-//! - Round shapes become circumscribed polyhedra, so that a path that is proven free is free for the true
-//!   shapes.
+//! - Spheres and capsules are exact rounded bodies. A cylinder becomes a circumscribed prism, so that a path that is
+//!   proven free is free for the true shapes.
 
 use std::collections::HashMap;
 
@@ -13,18 +13,21 @@ use colltrans_mesh::body::{self, BodyOptions, Loaded};
 use glam::{DAffine3, DVec3};
 
 use super::files::Source;
-use super::shapes::{Round, SIDES};
-use super::urdf::{self, PartGatherer};
-use super::{assembly_error, contents_error};
+use super::urdf::{self, LinkShape, PartGatherer};
+use super::{assembly_error, contents_error, mjcf};
 use crate::error::ReadError;
 use crate::robot::{JointKind, Link, Mimic, Robot, RobotJoint};
 use colltrans_assembly::AssemblyError;
 use colltrans_assembly::Piece;
 use colltrans_mesh::xml::Element;
 
-/// Reads a robot from a URDF file.
+/// Reads a robot from a URDF or MJCF file. The root element selects the format.
 pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
-    let (element, bytes) = urdf::parse_robot(&source)?;
+    let (element, bytes) = urdf::parse_root(&source)?;
+    if element.name == "mujoco" {
+        return mjcf::read_robot(source, &element, bytes);
+    }
+    urdf::check_robot(&source, &element)?;
     let joints = urdf::read_joints(&source, &element)?;
     // Rejects cycles, unknown links, and links with two parents.
     urdf::link_poses(&source, &element, &joints)?;
@@ -55,24 +58,19 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
     let mechanism = Mechanism::new(tree.frames)
         .map_err(|e| contents_error(source.path, "joints", e.to_string()))?;
     let joints = set_mimics(&source, tree.joints, &joints)?;
-    let hulls = source.options.hulls.iter().filter(|name| *name != "*");
-    if let Some(name) = hulls.into_iter().find(|name| !names.contains(&name.as_str())) {
-        let reason =
-            format!("cannot use the hull of unknown link {name}; links: {}", names.join(", "));
-        return Err(contents_error(source.path, "links", reason));
-    }
-    let mut gathered = PartGatherer::new(&source, bytes, Round::Circumscribed);
+    check_hull_names(&source, &names)?;
+    let mut gathered = PartGatherer::new(&source, bytes);
     let mut links = Vec::new();
     let mut notes = Vec::new();
     for link in element.children_named("link") {
         let name = urdf::element_name(&source, link)?;
-        let pieces = gathered.link_pieces(link, name, DAffine3::IDENTITY)?;
+        let shapes = gathered.link_shapes(link, name, DAffine3::IDENTITY)?;
         let mut bodies = Vec::new();
         let (takes_hull, mut is_hull) = (source.options.takes_hull(name), false);
         let mut dent: Option<f64> = None;
-        for piece in &pieces {
+        for shape in shapes {
             let options = source.options.body_options().with_hull(takes_hull);
-            let loaded = body_of_piece(piece, &options).map_err(|refused| {
+            let loaded = body_of_shape(&shape, &options).map_err(|refused| {
                 assembly_error(source.path)(AssemblyError::Part {
                     part: name.into(),
                     source: refused,
@@ -83,17 +81,17 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
             dent = dent.into_iter().chain(loaded.dent()).reduce(f64::max);
             let whose = if takes_hull { " as its convex hull" } else { "" };
             notes.extend(loaded.notes.iter().map(|said| format!("link {name}{whose}: {said}")));
+            if let LinkShape::Primitive(primitive, _) = shape {
+                notes.extend(
+                    primitive.replacement_note().map(|said| format!("link {name}: {said}")),
+                );
+            }
             bodies.push(loaded.body);
         }
-        notes.extend(round_shape_notes(link).map(|said| format!("link {name}: {said}")));
         let frame = tree.frame_of_link[name];
         links.push(Link { name: name.into(), frame, bodies, is_hull, dent });
     }
-    let PartGatherer { missing, notes: left_out, .. } = gathered;
-    if let Some(capsule) = left_out.first() {
-        let reason = format!("{capsule}; replace the capsule by a cylinder and two spheres");
-        return Err(contents_error(source.path, "links", reason));
-    }
+    let PartGatherer { missing, .. } = gathered;
     if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::MissingMeshes { path: source.path.into(), missing });
     }
@@ -104,6 +102,14 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
     }
     let name = element.get("name").unwrap_or_default().to_owned();
     Ok(Robot { name, links, joints, mechanism, notes, files: source.into_files() })
+}
+
+/// Checks that the links of [`hulls`](super::ReadOptions::hulls) exist.
+pub(super) fn check_hull_names(source: &Source, names: &[&str]) -> Result<(), ReadError> {
+    let mut hulls = source.options.hulls.iter().filter(|name| *name != "*");
+    let Some(name) = hulls.find(|name| !names.contains(&name.as_str())) else { return Ok(()) };
+    let reason = format!("cannot use the hull of unknown link {name}; links: {}", names.join(", "));
+    Err(contents_error(source.path, "links", reason))
 }
 
 /// The kinematic tree while it is built.
@@ -214,6 +220,21 @@ fn set_mimics(
     Ok(joints)
 }
 
+/// Builds a body from a shape, in the frame of its link: an exact rounded body for a sphere or capsule, a convex body if
+/// the mesh is convex, otherwise a solid.
+pub(super) fn body_of_shape(
+    shape: &LinkShape,
+    options: &BodyOptions,
+) -> Result<Loaded<AnyBody>, body::BodyError> {
+    match shape {
+        LinkShape::Mesh(piece) => body_of_piece(piece, options),
+        LinkShape::Primitive(primitive, at) => match primitive.rounded_body(*at) {
+            Some(built) => Ok(Loaded { body: built?.into(), precision: 0.0, notes: Vec::new() }),
+            None => body_of_piece(&primitive.enclosing_piece(*at), options),
+        },
+    }
+}
+
 /// Builds a body from a piece, in the frame of its link: convex if the piece is, otherwise a solid.
 fn body_of_piece(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>, body::BodyError> {
     let mut mesh = piece.mesh.clone();
@@ -224,25 +245,4 @@ fn body_of_piece(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>
         mesh.faces.iter_mut().for_each(|face| face.reverse());
     }
     crate::robot::body_from_mesh(&mesh, options)
-}
-
-/// Returns notes on the round shapes of a link, with the error of the polyhedra.
-fn round_shape_notes(link: &Element) -> impl Iterator<Item = String> + '_ {
-    let shapes = link
-        .children_named("collision")
-        .filter_map(|of| of.first_child("geometry")?.children.first());
-    shapes.filter_map(move |shape| {
-        let larger = match shape.name.as_str() {
-            "cylinder" => Round::Circumscribed.cylinder_scale(),
-            "sphere" => Round::Circumscribed.sphere_scale(),
-            _ => return None,
-        };
-        let radius = shape.numbers::<1>("radius").ok()??[0];
-        Some(format!(
-            "a {} of radius {radius} is replaced by a circumscribed polyhedron of {SIDES} sides, larger by up \
-             to {:.1e}",
-            shape.name,
-            (larger - 1.0) * radius
-        ))
-    })
 }

@@ -8,8 +8,8 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::files::Source;
 use super::manifest::rotation_from_rpy;
-use super::shapes::Round;
-use super::{Budget, Draft, Geometry, Placed, assemble, contents_error, parse_mesh, shapes};
+use super::shapes::Primitive;
+use super::{Budget, Draft, Geometry, Placed, assemble, contents_error, parse_mesh};
 use crate::error::ReadError;
 use colltrans_assembly::{Assembly, Piece};
 use colltrans_mesh::words::first_named;
@@ -23,16 +23,17 @@ pub(super) fn read_urdf(source: Source) -> Result<Assembly, ReadError> {
     let (robot, bytes) = parse_robot(&source)?;
     let joints = read_joints(&source, &robot)?;
     let places = link_poses(&source, &robot, &joints)?;
-    let mut gathered = PartGatherer::new(&source, bytes, Round::Inscribed);
+    let mut gathered = PartGatherer::new(&source, bytes);
     for link in robot.children_named("link") {
         let name = element_name(&source, link)?;
         gathered.add_link(link, name, places[name])?;
     }
-    let PartGatherer { drafts, missing, mut notes, .. } = gathered;
+    let PartGatherer { drafts, missing, .. } = gathered;
     if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::MissingMeshes { path: source.path.into(), missing });
     }
-    notes.extend(missing.iter().map(|file| format!("{file} not found; left out")));
+    let notes: Vec<String> =
+        missing.iter().map(|file| format!("{file} not found; left out")).collect();
     let which = match source.options.geometry {
         Geometry::Collision => "collision",
         Geometry::Visual => "visual",
@@ -48,9 +49,20 @@ pub(super) fn read_urdf(source: Source) -> Result<Assembly, ReadError> {
 
 /// Parses the robot of a file. Returns it with the number of bytes of the text.
 pub(super) fn parse_robot(source: &Source) -> Result<(Element, usize), ReadError> {
+    let (robot, bytes) = parse_root(source)?;
+    check_robot(source, &robot)?;
+    Ok((robot, bytes))
+}
+
+/// Parses a file. Returns its root element with the number of bytes of the text.
+pub(super) fn parse_root(source: &Source) -> Result<(Element, usize), ReadError> {
     let text = source.text()?;
     let refused = |(place, reason)| contents_error(source.path, format!("URDF: {place}"), reason);
-    let robot = Element::parse(&text).map_err(refused)?;
+    Ok((Element::parse(&text).map_err(refused)?, text.len()))
+}
+
+/// Checks that an element is a robot without macros.
+pub(super) fn check_robot(source: &Source, robot: &Element) -> Result<(), ReadError> {
     if robot.name != "robot" {
         let reason = format!("the root element is {}, expected robot", robot.name);
         return Err(contents_error(source.path, format!("URDF: line {}", robot.line), reason));
@@ -60,7 +72,7 @@ pub(super) fn parse_robot(source: &Source) -> Result<(Element, usize), ReadError
         let reason = format!("unexpanded macro {}; run xacro first", found.name);
         return Err(contents_error(source.path, format!("URDF: line {}", found.line), reason));
     }
-    Ok((robot, text.len()))
+    Ok(())
 }
 
 /// The parts while they are gathered.
@@ -69,41 +81,57 @@ pub(super) struct PartGatherer<'a> {
     budget: Budget,
     drafts: Vec<Draft>,
     pub(super) missing: Vec<String>,
-    pub(super) notes: Vec<String>,
-    round: Round,
+}
+
+/// A shape of a link, with its transformation to the frame of the link or to the world.
+pub(super) enum LinkShape {
+    /// A mesh.
+    Mesh(Piece),
+    /// A primitive shape at a pose.
+    Primitive(Primitive, DAffine3),
+}
+
+impl LinkShape {
+    /// Returns the mesh of the shape. Round shapes are replaced by inscribed polyhedra.
+    fn into_piece(self) -> Piece {
+        match self {
+            Self::Mesh(piece) => piece,
+            Self::Primitive(shape, at) => shape.piece(at),
+        }
+    }
 }
 
 impl<'a> PartGatherer<'a> {
-    pub(super) fn new(source: &'a Source<'a>, bytes: usize, round: Round) -> Self {
-        let (drafts, missing, notes) = (Vec::new(), Vec::new(), Vec::new());
-        Self { source, budget: Budget::with_bytes(bytes), drafts, missing, notes, round }
+    pub(super) fn new(source: &'a Source<'a>, bytes: usize) -> Self {
+        let (drafts, missing) = (Vec::new(), Vec::new());
+        Self { source, budget: Budget::with_bytes(bytes), drafts, missing }
     }
 
     /// Adds the part of a link, if it has geometry.
     fn add_link(&mut self, link: &Element, name: &str, world: DAffine3) -> Result<(), ReadError> {
-        let pieces = self.link_pieces(link, name, world)?;
-        if !pieces.is_empty() {
+        let shapes = self.link_shapes(link, name, world)?;
+        if !shapes.is_empty() {
             let refused =
                 |reason: String| contents_error(self.source.path, format!("link {name}"), reason);
             self.budget.count_placed().map_err(refused)?;
-            let pieces = pieces.into_iter().map(Placed::from).collect();
+            let pieces = shapes.into_iter().map(LinkShape::into_piece).map(Placed::from).collect();
             self.drafts.push(Draft::new(name, pieces).marked_as_one_part());
         }
         Ok(())
     }
 
-    /// Builds the geometry of a link whose frame is at `world`.
-    pub(super) fn link_pieces(
+    /// Reads the geometry of a link whose frame is at `world`.
+    pub(super) fn link_shapes(
         &mut self,
         link: &Element,
         name: &str,
         world: DAffine3,
-    ) -> Result<Vec<Piece>, ReadError> {
+    ) -> Result<Vec<LinkShape>, ReadError> {
         let which = match self.source.options.geometry {
             Geometry::Collision => "collision",
             Geometry::Visual => "visual",
         };
-        let mut pieces = Vec::new();
+        let mut shapes = Vec::new();
         for shown in link.children_named(which) {
             let refused =
                 |reason: String| contents_error(self.source.path, format!("link {name}"), reason);
@@ -112,19 +140,17 @@ impl<'a> PartGatherer<'a> {
             let shape =
                 shape.ok_or_else(|| refused(format!("a {which} element has no geometry")))?;
             match shape.name.as_str() {
-                "mesh" => pieces.extend(self.read_mesh(shape, name, at)?),
-                "capsule" => self
-                    .notes
-                    .push(format!("link {name}: capsule left out: not a supported geometry")),
+                "mesh" => shapes.extend(self.read_mesh(shape, name, at)?.map(LinkShape::Mesh)),
                 _ => {
-                    let piece = primitive_piece(shape, self.round, at).map_err(refused)?;
+                    let primitive = primitive(shape)
+                        .map_err(|reason| refused(format!("line {}: {reason}", shape.line)))?;
                     self.budget.count_placed().map_err(refused)?;
-                    self.budget.count_facets(piece.mesh.faces.len()).map_err(refused)?;
-                    pieces.push(piece);
+                    self.budget.count_facets(primitive.face_count()).map_err(refused)?;
+                    shapes.push(LinkShape::Primitive(primitive, at));
                 }
             }
         }
-        Ok(pieces)
+        Ok(shapes)
     }
 
     /// Reads a mesh of a link. `None` if the file does not exist, which is recorded.
@@ -152,35 +178,26 @@ impl<'a> PartGatherer<'a> {
     }
 }
 
-/// Builds a box, cylinder or sphere.
-fn primitive_piece(shape: &Element, round: Round, at: DAffine3) -> Result<Piece, String> {
+/// Reads a box, cylinder, sphere or capsule.
+fn primitive(shape: &Element) -> Result<Primitive, String> {
     let number = |name: &str| -> Result<f64, String> {
         shape.required(name)?;
         Ok(shape.numbers::<1>(name)?.map_or(0.0, |[x]| x))
     };
-    let sound = |sizes: &[f64]| {
-        let sound = sizes.iter().all(|x| x.is_finite() && *x > 0.0);
-        let what = &shape.name;
-        sound
-            .then_some(())
-            .ok_or_else(|| format!("a {what} has sizes {sizes:?}; accepted: finite and positive"))
-    };
-    match shape.name.as_str() {
+    let primitive = match shape.name.as_str() {
         "box" => {
             shape.required("size")?;
-            let size = shape.numbers::<3>("size")?.unwrap_or_default();
-            sound(&size).map(|()| shapes::cuboid(DVec3::from_array(size), at))
+            Primitive::Cuboid(DVec3::from_array(shape.numbers::<3>("size")?.unwrap_or_default()))
         }
-        "cylinder" => {
-            let (radius, length) = (number("radius")?, number("length")?);
-            sound(&[radius, length]).map(|()| shapes::cylinder(radius, length, round, at))
+        "cylinder" => Primitive::Cylinder { radius: number("radius")?, length: number("length")? },
+        "sphere" => Primitive::Sphere(number("radius")?),
+        "capsule" => Primitive::Capsule { radius: number("radius")?, length: number("length")? },
+        other => {
+            let accepted = "mesh, box, cylinder, sphere, capsule";
+            return Err(format!("unknown geometry {other}; accepted: {accepted}"));
         }
-        "sphere" => {
-            let radius = number("radius")?;
-            sound(&[radius]).map(|()| shapes::sphere(radius, round, at))
-        }
-        other => Err(format!("unknown geometry {other}; accepted: mesh, box, cylinder, sphere")),
-    }
+    };
+    primitive.checked()
 }
 
 /// Returns the name of an element, which must have one.

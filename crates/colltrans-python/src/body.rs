@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
-use colltrans_mesh::body::{BodyOptions, load_convex};
+use colltrans_mesh::body::{BodyOptions, drawn_body, load_convex};
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -287,6 +287,11 @@ impl ConvexPolyhedron {
     fn rounded(&self, radius: f64) -> PyResult<Self> {
         let body = self.0.clone().rounded(radius).or_raise()?;
         Ok(Self(body, self.1.clone(), self.2))
+    }
+
+    /// Returns the polyhedron with which pictures draw this body: vertices on its surface if it is rounded.
+    fn _drawn(&self) -> Self {
+        Self::from(drawn_body(&self.0).into_owned())
     }
 
     /// Reads the text that `to_json` wrote. The body has the same bits.

@@ -13,6 +13,7 @@ use colltrans::record::PathRecord;
 use colltrans::{AnyBody, AnyPlaced, ProofFile, Statement};
 use colltrans_assembly_io::read::{self, ReadOptions};
 use colltrans_assembly_io::robot::{Cell, Robot as Arm, RobotJoint, Table};
+use colltrans_mesh::body::drawn_body;
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -196,10 +197,11 @@ getters!(Robot, |it| {
 
 #[pymethods]
 impl Robot {
-    /// Reads a robot from a URDF file, in metres and radians.
+    /// Reads a robot from a URDF or MJCF file, in metres and radians.
     ///
-    /// Joints may be revolute, continuous, prismatic or fixed, and may follow others (``mimic``). Cylinders
-    /// and spheres are replaced by circumscribed polyhedra.
+    /// Joints may be revolute, continuous, prismatic or fixed, and may follow others (``mimic``). Spheres and
+    /// capsules are exact. Cylinders are replaced by circumscribed prisms. The links of an MJCF file (MuJoCo) are its
+    /// bodies and the ``world``; other geoms than spheres, capsules, boxes and cylinders are rejected.
     ///
     /// Parameters
     /// ----------
@@ -408,18 +410,22 @@ fn proof_of(found: &mut PathOutcome) -> Option<&mut PathProof> {
 /// A name, vertices in the world, and triangles.
 type NamedMesh<'py> = (String, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
 
-/// Returns the vertices of a body in its frame, and its triangles. Faces with more vertices become fans.
-fn mesh_of(body: AnyPlaced<'_>) -> (&[DVec3], Vec<[u32; 3]>) {
+/// Returns the vertices of a body in its frame, and its triangles. Faces with more vertices become fans. A rounded body
+/// is replaced by a polyhedron with vertices on its surface.
+fn mesh_of(body: AnyPlaced<'_>) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     match body {
-        AnyPlaced::Solid(placed) => (placed.body.vertices(), placed.body.triangles().to_vec()),
+        AnyPlaced::Solid(placed) => {
+            (placed.body.vertices().to_vec(), placed.body.triangles().to_vec())
+        }
         AnyPlaced::Convex(placed) => {
+            let body = drawn_body(placed.body);
             let fan = |face: u32| {
-                let corners: Vec<u32> = placed.body.face_vertices(face).collect();
+                let corners: Vec<u32> = body.face_vertices(face).collect();
                 let ends = corners.windows(2).skip(1).map(|ends| [corners[0], ends[0], ends[1]]);
                 ends.collect::<Vec<_>>()
             };
-            let faces = 0..placed.body.face_count() as u32;
-            (placed.body.vertices(), faces.flat_map(fan).collect())
+            let faces = 0..body.face_count() as u32;
+            (body.vertices().to_vec(), faces.flat_map(fan).collect())
         }
     }
 }

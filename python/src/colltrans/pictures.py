@@ -312,18 +312,13 @@ def _solid_mark(contact: SolidContact) -> _Mark:
     return _Mark("blocked", contact.translation, contact.point, contact.normal, direction)
 
 
-#: Numbers of rings and of points in a ring with which the balls of rounded bodies are drawn.
-_DRAWN_BALL = (11, 24)
-#: Maximum number of vertices of a rounded body that is drawn with its radius.
-_MAX_DRAWN_BALLS = 2000
-
 Placed: TypeAlias = tuple[Floats, NDArray[np.uint32], NDArray[Any]]
 
 
 def placed(body: Solid | ConvexPolyhedron, pose: Pose) -> Placed:
     """Returns the vertices in the world, the triangles, and the visible edges of a placed body."""
     if isinstance(body, ConvexPolyhedron):
-        body = _drawn_body(body)
+        body = body._drawn()
     vertices = body.vertices @ pose.rotation.T + pose.translation
     if isinstance(body, Solid):
         return vertices, body.triangles, _creases(vertices, body.triangles)
@@ -332,20 +327,6 @@ def placed(body: Solid | ConvexPolyhedron, pose: Pose) -> Placed:
     fans = [(f[0], *f[k : k + 2]) for f in body.faces for k in range(1, len(f) - 1)]
     triangles = np.array(fans, np.uint32)
     return vertices, triangles, _creases(vertices, triangles)
-
-
-def _drawn_body(body: ConvexPolyhedron) -> ConvexPolyhedron:
-    """Returns the body, or for a rounded body a polyhedron inside it that approximates it."""
-    if body.radius == 0 or len(body.vertices) > _MAX_DRAWN_BALLS:
-        return body
-    rings, count = _DRAWN_BALL
-    polar = np.linspace(0, np.pi, rings)[:, None]
-    around = np.linspace(0, 2 * np.pi, count, endpoint=False)[None, :]
-    axes = np.broadcast_arrays(
-        np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar)
-    )
-    ball = body.radius * np.stack(axes, axis=-1).reshape(1, -1, 3)
-    return ConvexPolyhedron((body.vertices[:, None] + ball).reshape(-1, 3))
 
 
 def _creases(vertices: Floats, triangles: NDArray[np.uint32]) -> NDArray[np.uint32]:

@@ -3,9 +3,9 @@
 //! A face of a convex body is hidden exactly if it looks away from the viewer. Therefore no two visible faces overlap on
 //! the page. An edge between a visible and a hidden face belongs to the silhouette.
 
-use crate::solid::drawn_body;
 use colltrans::glam::{DVec2, DVec3};
 use colltrans::{Aabb, ConvexPolyhedron, Feature, Pose};
+use colltrans_mesh::body::drawn_body;
 use colltrans_picture::{
     EDGE_WIDTH, FINE_WIDTH, GUIDE_WIDTH, HAIR_WIDTH, MARK_WIDTH, OUTLINE_WIDTH, Page, Paint,
     SHADES, SMOOTH_COSINE, Stroke, View,

@@ -10,8 +10,6 @@ mod motion;
 mod pair;
 mod shrinkable;
 
-use std::borrow::Cow;
-use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -20,7 +18,7 @@ use colltrans::record::FeaturesRecord;
 use colltrans::solid::{AsSolid, SolidReport};
 use colltrans::{Aabb, ConvexPolyhedron, Pose, QueryError, Solid};
 use colltrans_mesh::Mesh;
-use colltrans_mesh::body::{self, BodyError, BodyOptions, Loaded, Note, load_solid};
+use colltrans_mesh::body::{self, BodyError, BodyOptions, Loaded, Note, drawn_body, load_solid};
 
 use crate::body::{load_error_message, note_of_file, option_hint};
 use crate::failure::{Code, Failure};
@@ -178,11 +176,6 @@ pub(crate) fn query_failure(
     Failure::new(Code::Input, text)
 }
 
-/// Numbers of rings and of points in a ring with which pictures draw the balls of rounded bodies.
-const DRAWN_BALL: [u32; 2] = [11, 24];
-/// Maximum number of vertices of a rounded body that is drawn with its radius.
-const MAX_DRAWN_BALLS: usize = 2000;
-
 /// Maximum number of facets of a rounded solid that is drawn with its radius.
 const MAX_DRAWN_FACETS: usize = 100;
 
@@ -199,27 +192,6 @@ fn rounded_surface(solid: &Solid, pose: &Pose, origin: DVec3) -> (Vec<DVec3>, Ve
         vertices.extend(points);
     }
     (vertices, triangles)
-}
-
-/// Returns the body that a picture draws: for a rounded body a polyhedron with vertices on its surface, or the core if
-/// that has too many vertices.
-pub(crate) fn drawn_body(body: &ConvexPolyhedron) -> Cow<'_, ConvexPolyhedron> {
-    let radius = body.radius();
-    if radius == 0.0 || body.vertices().len() > MAX_DRAWN_BALLS {
-        return Cow::Borrowed(body);
-    }
-    let [rings, count] = DRAWN_BALL;
-    let ring = |k: u32| {
-        let (sine, cosine) = (PI * f64::from(k) / f64::from(rings - 1)).sin_cos();
-        (0..count).map(move |j| {
-            let (y, x) = (TAU * f64::from(j) / f64::from(count)).sin_cos();
-            DVec3::new(x * sine, y * sine, cosine) * radius
-        })
-    };
-    let ball: Vec<DVec3> = (0..rings).flat_map(ring).collect();
-    let points: Vec<DVec3> =
-        body.vertices().iter().flat_map(|&v| ball.iter().map(move |&w| v + w)).collect();
-    ConvexPolyhedron::from_points(&points).map_or(Cow::Borrowed(body), Cow::Owned)
 }
 
 /// Returns the vertices of a convex body at a pose, relative to `origin`, and triangles of its faces.

@@ -5,6 +5,7 @@
 //! default tolerance of a query from these precisions. Therefore all front ends return the same results for the
 //! same files.
 
+mod drawn;
 mod excess;
 mod note;
 mod orient;
@@ -22,6 +23,7 @@ use colltrans::{
 use glam::DVec3;
 use thiserror::Error;
 
+pub use drawn::drawn_body;
 pub use excess::Excess;
 pub use note::{Note, RemovedFaces, report_notes};
 

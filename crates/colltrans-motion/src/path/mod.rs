@@ -64,7 +64,7 @@ mod verify;
 
 use std::collections::HashSet;
 
-use colltrans_convex::body::{ConvexPolyhedron, Placed, Pose};
+use colltrans_convex::body::{Placed, Pose};
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::check_min_gap;
 use colltrans_convex::setting::error::QueryError;

@@ -19,9 +19,9 @@ const SETTINGS: u64 = 60;
 const CASTS: &[(&str, u64)] = &[
     ("random", 0x20da_bc2a_e7c4_0182),
     ("boxes", 0x62ad_bb17_85a4_44a3),
-    ("turned-boxes", 0xd95f_3335_449e_19b2),
+    ("turned-boxes", 0x6ab2_b3e1_2947_03a6),
     ("prisms", 0x2d80_e9c3_9593_3014),
-    ("grid", 0x8b87_de7b_ef31_a8c9),
+    ("grid", 0x6496_cf6b_b801_4f8d),
     ("face-face", 0x460e_d558_d0ff_6b80),
     ("edge-edge-parallel", 0xc3bf_9574_31b9_1afd),
     ("vertex-over-vertex", 0x615b_0538_0602_8c00),
@@ -37,9 +37,9 @@ const CASTS: &[(&str, u64)] = &[
     ("nearly", 0x1c51_1507_436e_cdc4),
     ("shallow", 0x0fd5_8e0d_80c5_7d36),
     ("thin", 0xd9b3_778f_aea5_5955),
-    ("cylinders", 0x314c_ed2e_56ac_f165),
-    ("magnitude", 0x26b5_df2c_4a10_afa6),
-    ("narrow-rings", 0xba3c_fd5e_9e3e_bbe9),
+    ("cylinders", 0x42a3_9156_a679_39b3),
+    ("magnitude", 0xcd16_c76a_8e01_0640),
+    ("narrow-rings", 0x85f2_04e2_e140_fe5f),
 ];
 
 fn hash_contact(hash: &mut Hash, contact: &Contact, cast: &Cast) {

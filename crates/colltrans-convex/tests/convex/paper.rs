@@ -116,7 +116,7 @@ fn guessed_solution_saves_planar_problems_but_no_proof() {
             let [center, guess, across] = problems.map(mean);
             assert!(contacts > 80, "{name} {n}: {contacts}");
             assert!(guess < 0.75 * center, "{name} {n}: {guess} of {center}");
-            assert!(across < guess && across < 0.6 * center, "{name} {n}: {across} of {center}");
+            assert!(across < 0.6 * center, "{name} {n}: {across} of {center}");
             for pivots in pivots.map(mean) {
                 assert!(pivots < 3.0, "{name} {n}: {pivots} portals");
             }

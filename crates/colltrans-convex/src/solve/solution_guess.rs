@@ -40,7 +40,7 @@ const BETWEEN_SHARE: f64 = 0.05;
 /// Minimum cosine between the normal of a large face and the direction at which the face is tried.
 const MIN_FACE_COSINE: f64 = 0.05;
 
-/// `delta` on bodies with rims, at least, as a multiple of the radius over the number of vertices (measured).
+/// Least `delta` on bodies with rims, as a multiple of the radius over the number of vertices: about a side of a rim.
 const RIM_EDGES: f64 = 8.0;
 
 /// Guesses the solution. `None` if the bodies seem to miss each other.

@@ -1,6 +1,6 @@
 //! Reads an MJCF robot (the XML format of MuJoCo): bodies with geoms, and hinge and slide joints.
 //!
-//! Reference: MuJoCo, *XML Reference*, version 3.
+//! Reference: `MuJoCo`, *XML Reference*, version 3.
 //!
 //! - The links are the `world` and all bodies, in the order of the file.
 //! - Joints of a body move it one after the other. The frame of a body is that of its last joint, and its origin is the

@@ -139,15 +139,14 @@ impl<'a> PartGatherer<'a> {
             let shape = shown.first_child("geometry").and_then(|g| g.children.first());
             let shape =
                 shape.ok_or_else(|| refused(format!("a {which} element has no geometry")))?;
-            match shape.name.as_str() {
-                "mesh" => shapes.extend(self.read_mesh(shape, name, at)?.map(LinkShape::Mesh)),
-                _ => {
-                    let primitive = primitive(shape)
-                        .map_err(|reason| refused(format!("line {}: {reason}", shape.line)))?;
-                    self.budget.count_placed().map_err(refused)?;
-                    self.budget.count_facets(primitive.face_count()).map_err(refused)?;
-                    shapes.push(LinkShape::Primitive(primitive, at));
-                }
+            if shape.name == "mesh" {
+                shapes.extend(self.read_mesh(shape, name, at)?.map(LinkShape::Mesh));
+            } else {
+                let primitive = primitive(shape)
+                    .map_err(|reason| refused(format!("line {}: {reason}", shape.line)))?;
+                self.budget.count_placed().map_err(refused)?;
+                self.budget.count_facets(primitive.face_count()).map_err(refused)?;
+                shapes.push(LinkShape::Primitive(primitive, at));
             }
         }
         Ok(shapes)

@@ -444,8 +444,8 @@ fn published_ball_lands_on_large_cuboids() {
     for half in [5.0, 50.0, 500.0, 5000.0] {
         let floor = cuboid(DVec3::new(-half, -1.0, -half), DVec3::new(half, 0.0, half));
         for i in 0..cases(100) {
-            let height = 1.177 + 2e-4 * i as f64;
-            let aside = 9e-3 * half * i as f64;
+            let height = 1.177 + 2e-4 * f64::from(i);
+            let aside = 9e-3 * half * f64::from(i);
             let start = at(aside, height, -0.7 * aside);
             let cast = Cast::new(ball.at(start), floor.at(Pose::IDENTITY), DVec3::NEG_Y);
             let contact = judged_contact(&cast.expect("a query"));

@@ -58,6 +58,7 @@ impl<'a> FreeHalfSpace<'a> {
     /// # Errors
     /// - [`QueryError::Tolerance`] if the tolerance is negative, or not below the sum of the radii.
     /// - [`FreeError::NotRounded`], [`FreeError::Apart`] and [`FreeError::Deep`] for other bodies.
+    /// - [`FreeError::NotProven`] if the tolerance is about as small as the rounding errors.
     /// - The errors of [`Pair::distance`] and [`Pair::depth`].
     ///
     /// ```
@@ -106,10 +107,15 @@ impl<'a> FreeHalfSpace<'a> {
             near: distance.near,
             blocked_cone: blocked_cone(&pair, &distance.near, tolerance),
         };
-        match free.verify() {
-            Ok(()) => Ok(free),
-            Err(_) => Err(FreeError::Deep { depth: pair.depth()?.upper, tolerance }),
+        if let Err(error) = free.verify() {
+            let depth = pair.depth()?;
+            return Err(if depth.lower > tolerance {
+                FreeError::Deep { depth: depth.upper, tolerance }
+            } else {
+                error.into()
+            });
         }
+        Ok(free)
     }
 
     /// Returns the unit contact normal in the world, from the moving to the fixed body. Directions that do not have a

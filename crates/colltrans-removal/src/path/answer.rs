@@ -15,7 +15,7 @@ use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::SolidCast;
-use colltrans_solid::body::{AsSolid, Solid};
+use colltrans_solid::body::{AsSolid, Solid, SolidError};
 
 /// Tolerance of the search, as a fraction of the tolerance of the answer.
 const SEARCH_TOLERANCE_SHARE: f64 = 0.8;
@@ -131,6 +131,10 @@ impl RemovalSearch {
     ) -> Result<Self, FreeError> {
         if !(2..=MAX_BODIES).contains(&bodies.len()) {
             return Ok(Self::NotFound { searched: SearchWork::default() });
+        }
+        let mut radii = bodies.iter().map(|placed| placed.body.radius());
+        if let Some(radius) = radii.find(|radius| *radius != 0.0) {
+            return Err(QueryError::from(SolidError::Rounded { radius }).into());
         }
         let wrong = |d: &&DVec3| !(d.is_finite() && d.try_normalize().is_some());
         if let Some(&direction) = options.directions.iter().find(wrong) {

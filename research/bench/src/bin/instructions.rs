@@ -84,9 +84,10 @@ fn bodies(kind: &str, n: usize, random: &mut Random) -> Result<Bodies, String> {
         "thin" => None,
         other => return Err(format!("unknown shape {other:?}")),
     };
-    let mut one = || match shape {
-        Some(shape) => shape.draw(n, random),
-        None => {
+    let mut one = || {
+        if let Some(shape) = shape {
+            shape.draw(n, random)
+        } else {
             let around =
                 (n as f64 * 4.0 / (std::f64::consts::PI * STRETCH)).sqrt().max(8.0).round();
             let axes = DVec3::from_array([0; 3].map(|_| random.range(0.6, 1.4)));
@@ -156,7 +157,9 @@ fn run(arguments: &Arguments) -> Result<Counts, String> {
             // The first cast builds the sections.
             casts[0].first_contact().map_err(|error| error.to_string())?;
             counted_casts(&casts[1..], None, &mut outcomes);
-            outcomes.iter().for_each(|outcome| counts.add(outcome));
+            for outcome in &outcomes {
+                counts.add(outcome);
+            }
             continue;
         }
         for _ in 0..arguments.casts {
@@ -171,7 +174,9 @@ fn run(arguments: &Arguments) -> Result<Counts, String> {
             tracker.first_contact(&casts[0]).map_err(|error| error.to_string())?;
             outcomes.clear();
             counted_casts(&casts[1..], Some(&mut tracker), &mut outcomes);
-            outcomes.iter().for_each(|outcome| counts.add(outcome));
+            for outcome in &outcomes {
+                counts.add(outcome);
+            }
         }
     }
     Ok(counts)

@@ -105,11 +105,11 @@ impl Cta {
         let quote = if self.0.until == cta::Until::Exit { "'" } else { "" };
         let mut options = format!("start='{}', until={quote}{}{quote}", self.0.start, self.0.until);
         if self.0.cuts != cta::Cuts::default() {
-            options += &format!(", cuts='{}'", self.0.cuts);
+            options.extend([", cuts='", &self.0.cuts.to_string(), "'"]);
         }
         for (name, is_set) in [("across_cells", self.across_cells()), ("cold", self.cold())] {
             if is_set {
-                options += &format!(", {name}=True");
+                options.extend([", ", name, "=True"]);
             }
         }
         format!("Cta({options})")

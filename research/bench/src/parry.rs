@@ -47,19 +47,19 @@ impl ParrySetting {
     }
 
     /// Returns parry's distance; 0 if the bodies overlap.
-    pub fn distance(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
+    pub fn distance(&self, moving: &dyn Shape, fixed: &dyn Shape) -> Option<f64> {
         let [a, b] = &self.poses;
         query::distance(a, moving, b, fixed).ok().map(|found| found.distance)
     }
 
     /// Returns parry's penetration depth.
-    pub fn depth(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
+    pub fn depth(&self, moving: &dyn Shape, fixed: &dyn Shape) -> Option<f64> {
         let [a, b] = &self.poses;
         query::contact(a, moving, b, fixed, 0.0).ok()?.map(|contact| -contact.dist)
     }
 
     /// Returns parry's time of impact, if there is one.
-    pub fn cast(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
+    pub fn cast(&self, moving: &dyn Shape, fixed: &dyn Shape) -> Option<f64> {
         let options = ShapeCastOptions {
             compute_impact_geometry_on_penetration: false,
             ..ShapeCastOptions::default()
@@ -153,7 +153,7 @@ impl Spin {
     }
 
     /// Returns parry's time of impact from 0 to 1, if there is one.
-    pub fn cast(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
+    pub fn cast(&self, moving: &dyn Shape, fixed: &dyn Shape) -> Option<f64> {
         query::cast_shapes_nonlinear(&self.moving, moving, &self.fixed, fixed, 0.0, 1.0, true)
             .ok()?
             .map(|hit| hit.time_of_impact)

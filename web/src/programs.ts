@@ -36,14 +36,14 @@ export function asRust(state: State): string {
   const solids = takes.some(isSolid);
   const turned = (["moving", "fixed"] as const).some((slot) => state.poses[slot].slice(3).join() !== "0,0,0,1");
   const narrowed = state.solver === "cta" && (state.start !== "center" || state.until !== null);
-  const from = { center: "NarrowFrom::Center", ellipsoids: "NarrowFrom::Ellipsoids" }[state.start];
-  const until = state.until === null ? "Until::Exit" : `Until::Gap(${float(state.until)})`;
+  const from = { center: "cta::Start::Center", ellipsoids: "cta::Start::Ellipsoids" }[state.start];
+  const until = state.until === null ? "cta::Until::Exit" : `cta::Until::Gap(${float(state.until)})`;
   const solver = narrowed
-    ? `.with_options(Options::default().with_solver(Solver::Cta).with_narrowing(Narrowing::new(${from}, ${until})))?`
+    ? `.with_options(Options::default().with_solver(Solver::Cta).with_narrowing(cta::Options::new(${from}, ${until})))?`
     : { auto: "", cta: ".with_solver(Solver::Cta)", portal: ".with_solver(Solver::Portal)" }[state.solver];
   const names = solids
     ? ["Pose", !takes.every(isSolid) && "Solid", "StartOverlap"]
-    : ["Cast", ...(narrowed ? ["NarrowFrom", "Narrowing", "Options"] : []), "Pose", solver && "Solver", narrowed && "Until"];
+    : ["Cast", narrowed && "Options", "Pose", solver && "Solver", narrowed && "cta"];
   const loads = ["BodyOptions", solids && "between", !takes.every(isSolid) && "load_convex", solids && "load_solid"];
   const body = (slot: Slot) => (solids && !isSolid(state.parts[slot].take) ? `${slot}_body` : `${slot}.body`);
   const precision = (slot: Slot) => (isSolid(state.parts[slot].take) ? `${slot}.precision` : "0.0");

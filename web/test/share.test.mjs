@@ -46,7 +46,7 @@ test("and as programs", () => {
   const state = fromHash('#m=a"b.stl:hull&f=plate.off:open&d=0,0,-1&tol=1&mp=0,0,7,0,0,0,1');
   assert.match(asRust(state), /load_convex\("a\\"b\.stl", &BodyOptions \{ hull: true, [^]*Solid::from_convex\(&moving\.body\)\?[^]*load_solid\("plate\.off", &BodyOptions \{ open: true, [^]*DVec3::new\(0\.0, 0\.0, -1\.0\),\n *\[0\.0, fixed\.precision\],\n *Some\(1\.0\)/);
   const narrowed = fromHash("#solver=cta&until=0.1");
-  assert.match(asRust(narrowed), /use colltrans::\{Cast, NarrowFrom, Narrowing, Options, Pose, Solver, Until\};[^]*with_narrowing\(Narrowing::new\(NarrowFrom::Center, Until::Gap\(0\.1\)\)\)\)\?;/);
+  assert.match(asRust(narrowed), /use colltrans::\{Cast, Options, Pose, Solver, cta\};[^]*with_narrowing\(cta::Options::new\(cta::Start::Center, cta::Until::Gap\(0\.1\)\)\)\)\?;/);
   assert.match(asPython(narrowed), /solver=colltrans\.Cta\(until=0\.1\)/);
   assert.match(asPython(fromHash("#solver=cta")), /solver="cta"/);
   assert.match(asPython(state), /read\("a\\"b\.stl", hull=True\)[^]*Solid\.read\("plate\.off", open=True\)[^]*tolerance=1\.0/);

@@ -14,8 +14,8 @@ use crate::solve::scene::PairFrame;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::VertexPair;
 
-/// Maximum difference of the bounds, in noises.
-const MAX_WIDTH_NOISES: f64 = 8.0;
+/// Maximum difference of the bounds, in noises: below that of a search through the trees.
+const MAX_WIDTH_NOISES: f64 = 4.5;
 
 /// The nearest facets of two bodies that a plane separates.
 pub(crate) struct NearestFacets {

@@ -184,18 +184,23 @@ impl Setting {
         found: &Distance<Solid>,
         noise: f64,
     ) -> Result<(), &'static str> {
+        // Points are rounded to coordinates of the world, and those below the range of bodies become zero.
+        let points = [found.on_moving, found.on_fixed];
+        let largest = points.map(|point| point.abs().max_element()).into_iter().fold(0.0, f64::max);
+        let allowed = 64.0 * noise + 4.0 * f64::EPSILON * largest;
         let apart = found.on_moving.distance(found.on_fixed);
-        if found.lower > 0.0 && (apart - found.upper).abs() > 64.0 * noise {
+        if found.lower > 0.0 && (apart - found.upper).abs() > allowed {
             return Err("points apart");
         }
-        let points = [found.on_moving, found.on_fixed];
+        let in_range = |x: f64| if x.abs() < 1e-60 { 0.0 } else { x };
         for ((solid, pose), point) in self.solids.iter().zip(&self.poses).zip(points) {
+            let point = DVec3::from_array(point.to_array().map(in_range));
             let probe = ConvexPolyhedron::from_points(&[point]).map_err(|_| "point")?;
             let pair =
                 Pair::between(probe.at(Pose::IDENTITY), solid.at(*pose)).map_err(|_| "pair")?;
             // The distance of the point from the rounded solid.
             let off = pair.distance().map_err(|_| "probe")?.lower;
-            if off > 64.0 * noise {
+            if off > allowed {
                 return Err("point off the body");
             }
         }

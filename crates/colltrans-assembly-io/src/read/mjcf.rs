@@ -16,9 +16,8 @@ use colltrans::motion::path::{Frame, Joint, Mechanism};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::files::Source;
-use super::robot::{body_of_shape, check_hull_names};
+use super::links::{LinkShape, check_hull_names};
 use super::shapes::Primitive;
-use super::urdf::LinkShape;
 use super::{Budget, Names, assembly_error, contents_error};
 use crate::error::ReadError;
 use crate::robot::{JointKind, Link, Robot, RobotJoint};
@@ -448,7 +447,7 @@ impl<'a> Reader<'a> {
             .map_err(|reason| self.error(element, reason))?;
         let placed = LinkShape::Primitive(shape, scope.at * pose);
         let link = &mut self.links[scope.link];
-        let loaded = body_of_shape(&placed, &self.source.options.body_options()).map_err(|e| {
+        let loaded = placed.body(&self.source.options.body_options()).map_err(|e| {
             let part = link.name.clone();
             assembly_error(self.source.path)(AssemblyError::Part { part, source: e })
         })?;

@@ -11,6 +11,8 @@ mod files;
 mod folder;
 mod gltf;
 #[cfg(feature = "files")]
+mod links;
+#[cfg(feature = "files")]
 mod manifest;
 #[cfg(feature = "files")]
 mod mjcf;

@@ -7,18 +7,17 @@
 
 use std::collections::HashMap;
 
+use colltrans::Pose;
 use colltrans::motion::path::{Frame, Joint, Mechanism};
-use colltrans::{AnyBody, Pose};
-use colltrans_mesh::body::{self, BodyOptions, Loaded};
 use glam::{DAffine3, DVec3};
 
 use super::files::Source;
-use super::urdf::{self, LinkShape, PartGatherer};
+use super::links::{LinkShape, check_hull_names};
+use super::urdf::{self, PartGatherer};
 use super::{assembly_error, contents_error, mjcf};
 use crate::error::ReadError;
 use crate::robot::{JointKind, Link, Mimic, Robot, RobotJoint};
 use colltrans_assembly::AssemblyError;
-use colltrans_assembly::Piece;
 use colltrans_mesh::xml::Element;
 
 /// Reads a robot from a URDF or MJCF file. The root element selects the format.
@@ -70,7 +69,7 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
         let mut dent: Option<f64> = None;
         for shape in shapes {
             let options = source.options.body_options().with_hull(takes_hull);
-            let loaded = body_of_shape(&shape, &options).map_err(|refused| {
+            let loaded = shape.body(&options).map_err(|refused| {
                 assembly_error(source.path)(AssemblyError::Part {
                     part: name.into(),
                     source: refused,
@@ -102,14 +101,6 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
     }
     let name = element.get("name").unwrap_or_default().to_owned();
     Ok(Robot { name, links, joints, mechanism, notes, files: source.into_files() })
-}
-
-/// Checks that the links of [`hulls`](super::ReadOptions::hulls) exist.
-pub(super) fn check_hull_names(source: &Source, names: &[&str]) -> Result<(), ReadError> {
-    let mut hulls = source.options.hulls.iter().filter(|name| *name != "*");
-    let Some(name) = hulls.find(|name| !names.contains(&name.as_str())) else { return Ok(()) };
-    let reason = format!("cannot use the hull of unknown link {name}; links: {}", names.join(", "));
-    Err(contents_error(source.path, "links", reason))
 }
 
 /// The kinematic tree while it is built.
@@ -218,31 +209,4 @@ fn set_mimics(
         }
     }
     Ok(joints)
-}
-
-/// Builds a body from a shape, in the frame of its link: an exact rounded body for a sphere or capsule, a convex body if
-/// the mesh is convex, otherwise a solid.
-pub(super) fn body_of_shape(
-    shape: &LinkShape,
-    options: &BodyOptions,
-) -> Result<Loaded<AnyBody>, body::BodyError> {
-    match shape {
-        LinkShape::Mesh(piece) => body_of_piece(piece, options),
-        LinkShape::Primitive(primitive, at) => match primitive.rounded_body(*at) {
-            Some(built) => Ok(Loaded { body: built?.into(), precision: 0.0, notes: Vec::new() }),
-            None => body_of_piece(&primitive.enclosing_piece(*at), options),
-        },
-    }
-}
-
-/// Builds a body from a piece, in the frame of its link: convex if the piece is, otherwise a solid.
-fn body_of_piece(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>, body::BodyError> {
-    let mut mesh = piece.mesh.clone();
-    for vertex in &mut mesh.vertices {
-        *vertex = piece.world_from_piece.transform_point3(*vertex);
-    }
-    if piece.world_from_piece.matrix3.determinant() < 0.0 {
-        mesh.faces.iter_mut().for_each(|face| face.reverse());
-    }
-    crate::robot::body_from_mesh(&mesh, options)
 }

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::files::Source;
+use super::links::LinkShape;
 use super::manifest::rotation_from_rpy;
 use super::shapes::Primitive;
 use super::{Budget, Draft, Geometry, Placed, assemble, contents_error, parse_mesh};
@@ -81,24 +82,6 @@ pub(super) struct PartGatherer<'a> {
     budget: Budget,
     drafts: Vec<Draft>,
     pub(super) missing: Vec<String>,
-}
-
-/// A shape of a link, with its transformation to the frame of the link or to the world.
-pub(super) enum LinkShape {
-    /// A mesh.
-    Mesh(Piece),
-    /// A primitive shape at a pose.
-    Primitive(Primitive, DAffine3),
-}
-
-impl LinkShape {
-    /// Returns the mesh of the shape. Round shapes are replaced by inscribed polyhedra.
-    fn into_piece(self) -> Piece {
-        match self {
-            Self::Mesh(piece) => piece,
-            Self::Primitive(shape, at) => shape.piece(at),
-        }
-    }
 }
 
 impl<'a> PartGatherer<'a> {

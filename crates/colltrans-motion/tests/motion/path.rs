@@ -370,8 +370,8 @@ fn invalid_input_returns_typed_errors() {
     assert_eq!(query(row, 0, [0, 1]), Ok(()));
 }
 
-#[test]
-fn cube_lowered_flush_onto_step_reports_contact() {
+/// Returns a lift that lowers a body by 8, its path, and the two cuboids of a step below.
+fn lift_above_step() -> (Mechanism, JointPath, [ConvexPolyhedron; 2]) {
     let lift = Frame {
         parent: None,
         origin: at(1.0, 5.0, 0.0),
@@ -379,7 +379,13 @@ fn cube_lowered_flush_onto_step_reports_contact() {
     };
     let mechanism = Mechanism::new(vec![lift]).expect("a lift");
     let path = JointPath::at_unit_times(vec![vec![0.0], vec![8.0]]).expect("a path");
-    let pieces = [cuboid([0.0; 3], [3.0, 1.0, 1.0]), cuboid([0.0, 1.0, 0.0], [1.0, 3.0, 1.0])];
+    let step = [cuboid([0.0; 3], [3.0, 1.0, 1.0]), cuboid([0.0, 1.0, 0.0], [1.0, 3.0, 1.0])];
+    (mechanism, path, step)
+}
+
+#[test]
+fn cube_lowered_flush_onto_step_reports_contact() {
+    let (mechanism, path, pieces) = lift_above_step();
     let step = Solid::from_pieces(&pieces.map(|piece| Solid::from_convex(&piece).unwrap()));
     let (step, cube) = (step.unwrap(), cuboid([-0.5; 3], [0.5; 3]));
     // Lowered onto each part of the step, with sides in one plane.
@@ -398,14 +404,7 @@ fn cube_lowered_flush_onto_step_reports_contact() {
 /// A ball and a box are lowered onto a step, which may be rounded.
 #[test]
 fn rounded_bodies_meet_rounded_solids_at_closed_form_times() {
-    let lift = Frame {
-        parent: None,
-        origin: at(1.0, 5.0, 0.0),
-        joint: Joint::Sliding(DVec3::new(0.0, -1.0, 0.0)),
-    };
-    let mechanism = Mechanism::new(vec![lift]).expect("a lift");
-    let path = JointPath::at_unit_times(vec![vec![0.0], vec![8.0]]).expect("a path");
-    let pieces = [cuboid([0.0; 3], [3.0, 1.0, 1.0]), cuboid([0.0, 1.0, 0.0], [1.0, 3.0, 1.0])];
+    let (mechanism, path, pieces) = lift_above_step();
     let step = Solid::from_pieces(&pieces).expect("a solid");
     let ball = ConvexPolyhedron::sphere(DVec3::ZERO, 0.5).expect("a ball");
     let cube = cuboid([-0.5; 3], [0.5; 3]);

@@ -302,7 +302,7 @@ impl SolidPairSearch for Pair<'_, Solid> {
             SolidNear::Meeting(place) => shared_points(&scene, place),
             SolidNear::Points { triangles, weights, distance } => {
                 let cores = weighted_points(&scene, triangles, weights.map(DVec3::from_array));
-                points_on_surfaces(&self.bodies, cores, distance, DVec3::ZERO)
+                surface_points(&self.bodies, cores, distance, DVec3::ZERO)
             }
         };
         Ok(points.map(|point| point + origin))
@@ -443,7 +443,7 @@ fn distance_answer(
         let near = near_less_radii(&pair.bodies, spot.solid_near(scene));
         let normal = if nearest.lower > 0.0 { spot.nearest.normal } else { DVec3::ZERO };
         let cores = spot.witness_points(scene);
-        (near, points_on_surfaces(&pair.bodies, cores, near.distance(), normal))
+        (near, surface_points(&pair.bodies, cores, near.distance(), normal))
     };
     let lower = if place.is_some() { 0.0 } else { pair.bodies.less_radii(nearest.lower).max(0.0) };
     let spot = (lower > 0.0).then_some(spot);
@@ -459,17 +459,6 @@ fn distance_answer(
         gap: (lower > 0.0).then_some(SolidGap { gap: lower }),
         steps,
     }
-}
-
-/// Returns the points of rounded bodies that correspond to nearest points of their cores at this distance of the
-/// bodies. Changes nothing if no body is rounded. `normal` replaces the direction between the points if they coincide.
-fn points_on_surfaces(
-    bodies: &TwoBodies<'_, Solid>,
-    cores: [DVec3; 2],
-    distance: f64,
-    normal: DVec3,
-) -> [DVec3; 2] {
-    if bodies.is_rounded() { surface_points(bodies, cores, distance, normal) } else { cores }
 }
 
 /// Returns the smallest distance of the cores that the entries of a cover prove.

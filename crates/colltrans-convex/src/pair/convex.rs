@@ -118,11 +118,7 @@ fn distance_of_search(
 #[inline]
 pub fn nearest_points_in_world(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
     let cores = bodies.core_points(&near.pairs, &near.weights);
-    if bodies.is_rounded() {
-        rounded::surface_points(bodies, cores, near.distance, DVec3::ZERO)
-    } else {
-        cores
-    }
+    rounded::surface_points(bodies, cores, near.distance, DVec3::ZERO)
 }
 
 /// Returns the features of the bodies in the planes perpendicular to the normal of `plane`. `noise` is the

@@ -39,8 +39,9 @@ pub(super) fn distance(bodies: &TwoBodies, cores: Distance) -> Distance {
     }
 }
 
-/// Returns the nearest points of rounded bodies from those of their cores, in the world: one point of both bodies if
-/// their `distance` is 0. `normal` replaces the direction between the points if they coincide.
+/// Returns the nearest points of bodies from those of their cores, in the world: one point of both bodies if a body is
+/// rounded and their `distance` is 0. `normal` replaces the direction between the points if they coincide.
+#[inline]
 pub fn surface_points<B: VertexHull>(
     bodies: &TwoBodies<'_, B>,
     cores: [DVec3; 2],
@@ -48,7 +49,7 @@ pub fn surface_points<B: VertexHull>(
     normal: DVec3,
 ) -> [DVec3; 2] {
     let [on_moving, on_fixed] = bodies.surface_points(cores, DVec3::ZERO, normal);
-    if distance == 0.0 {
+    if distance == 0.0 && bodies.is_rounded() {
         // The point of the segment between the cores' points that is nearest to the middle of the surface points.
         let [p, q] = cores;
         [on_moving.midpoint(on_fixed).clamp(p.min(q), p.max(q)); 2]

@@ -1,9 +1,9 @@
 //! Motions of solids: the time at which two of them first meet.
 //!
-//! Both solids (of rounded ones the cores) are shrunk by half of a tolerance, as for casts, so that a part that fits into another one can rotate in
-//! it. An overlap at the start, including containment, is decided exactly. Afterwards the surfaces must meet before one
-//! solid can contain the other. The search finds the first contact of facets in both bounding volume trees and in
-//! time.
+//! Both solids are shrunk by half of a tolerance, as for casts, so that a part that fits into another one can rotate in
+//! it. Of rounded solids the cores are shrunk. An overlap at the start, including containment, is decided exactly.
+//! Afterwards the surfaces must meet before one solid can contain the other. The search finds the first contact of facets
+//! in both bounding volume trees and in time.
 //!
 //! Each module uses only those before it: `tree` (a shrunk solid), `window` (one plane for two parts in an interval),
 //! `facets` (two facets as convex bodies), `inside` (a point inside both solids). `search`, `meeting` (proves contact

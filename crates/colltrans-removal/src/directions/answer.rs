@@ -24,7 +24,7 @@ use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::check_direction;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::SolidSteps;
-use colltrans_solid::body::{AsSolid, Solid, SolidError};
+use colltrans_solid::body::{AsSolid, Solid, check_is_not_rounded};
 use colltrans_solid::cast::StartOverlap;
 use colltrans_solid::solve::overlap;
 use colltrans_solid::{SolidCast, SolidScene};
@@ -573,9 +573,7 @@ pub(super) fn checked_bodies<'a, A: AsSolid, B: AsSolid>(
     let cast = Cast::between(*moving, *fixed, DVec3::Z)?.with_options(options.cast_options())?;
     let scene = cast.checked_query_scene()?;
     for (which, solid) in [("moving", cast.moving()), ("fixed", cast.fixed())] {
-        if solid.radius() != 0.0 {
-            return Err(QueryError::from(SolidError::Rounded { radius: solid.radius() }).into());
-        }
+        check_is_not_rounded(solid.radius()).map_err(QueryError::from)?;
         if !solid.is_closed() {
             return Err(FreeError::Open { which });
         }

@@ -15,7 +15,7 @@ use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::SolidCast;
-use colltrans_solid::body::{AsSolid, Solid, SolidError};
+use colltrans_solid::body::{AsSolid, Solid, check_is_not_rounded};
 
 /// Tolerance of the search, as a fraction of the tolerance of the answer.
 const SEARCH_TOLERANCE_SHARE: f64 = 0.8;
@@ -132,9 +132,8 @@ impl RemovalSearch {
         if !(2..=MAX_BODIES).contains(&bodies.len()) {
             return Ok(Self::NotFound { searched: SearchWork::default() });
         }
-        let mut radii = bodies.iter().map(|placed| placed.body.radius());
-        if let Some(radius) = radii.find(|radius| *radius != 0.0) {
-            return Err(QueryError::from(SolidError::Rounded { radius }).into());
+        for placed in bodies {
+            check_is_not_rounded(placed.body.radius()).map_err(QueryError::from)?;
         }
         let wrong = |d: &&DVec3| !(d.is_finite() && d.try_normalize().is_some());
         if let Some(&direction) = options.directions.iter().find(wrong) {

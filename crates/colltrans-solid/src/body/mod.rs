@@ -43,6 +43,8 @@ pub use error::SolidError;
 use extremes::OffsetExtremes;
 use faces::Faces;
 pub use report::{Shell, ShellKind, SolidReport};
+#[doc(hidden)]
+pub use round::check_is_not_rounded;
 pub use shells::ray_crossing;
 pub use shrink::{OffsetField, ShrinkReport, offset_vertex};
 use tree::Node;

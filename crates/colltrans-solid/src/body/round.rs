@@ -58,6 +58,9 @@ impl Solid {
 }
 
 /// Returns an error for a rounded body, for operations that are not defined for it.
-pub(super) fn check_is_not_rounded(radius: f64) -> Result<(), SolidError> {
+///
+/// # Errors
+/// [`SolidError::Rounded`] if the radius is not 0.
+pub fn check_is_not_rounded(radius: f64) -> Result<(), SolidError> {
     if radius == 0.0 { Ok(()) } else { Err(SolidError::Rounded { radius }) }
 }

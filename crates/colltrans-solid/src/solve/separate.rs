@@ -35,8 +35,10 @@ pub(crate) const HEIGHTS: f64 = 1.5;
 const BOXES: f64 = 2.0;
 
 /// Finds a plane, parallel to the direction, that separates the offset bodies by more than the minimum gap and the
-/// rounding errors. The margin is that of the cores less both radii. `None` if there is no such plane. Also `None` sometimes for large faces whose distance is at most
-/// the offset, because the search visits at most [`MAX_LEAVES`] leaves for a vertex.
+/// rounding errors. The margin is that of the cores less both radii.
+///
+/// `None` if there is no such plane. Also `None` sometimes for large faces whose distance is at most the offset, because
+/// the search visits at most [`MAX_LEAVES`] leaves for a vertex.
 pub(crate) fn find_separation(scene: &PairFrame) -> Option<Separation> {
     let boxes = [&scene.moving, &scene.fixed].map(PlacedBody::offset_bounds);
     between_boxes(scene, &boxes).or_else(|| between_hulls(scene))

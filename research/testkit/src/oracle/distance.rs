@@ -10,10 +10,13 @@
 //! [`distance`] uses the algorithm of Wolfe ("Finding the nearest point in a polytope", Mathematical
 //! Programming 11, 1976). While some `m` violates the second condition, the lowest such `m` is added to the
 //! simplex, whose nearest point is found by trying all its faces. `|v|` decreases strictly, so the algorithm
-//! terminates. All numbers are exact, so the result satisfies both conditions exactly. Only vertices are used,
+//! terminates. The same search in `f64` guesses the first simplex; the result does not depend on it, because both
+//! conditions are checked exactly. All numbers are exact, so the result satisfies both conditions exactly. Only vertices are used,
 //! no faces or edges. Divisions are avoided by `v = V / D` with `D > 0`, both dyadic.
 //!
 //! [`brute_force`] is independent: it compares all pairs of vertices and triangles, and of edges, in `f64`.
+
+use std::mem;
 
 use colltrans::{ConvexPolyhedron, Pose};
 use glam::DVec3;
@@ -66,24 +69,166 @@ pub fn distance_of_point(point: DVec3, (body, pose): (&ConvexPolyhedron, &Pose))
 /// # Panics
 /// If a set is empty.
 pub fn distance(moving: &[Vector], fixed: &[Vector]) -> Distance {
-    let mut simplex = vec![fixed[0].minus(&moving[0])];
+    let rounded = Rounded::new([moving, fixed]);
+    let mut simplex = rounded.guess_simplex([moving, fixed]);
+    // The nearest point of the guessed simplex is in its interior, unless the guess is wrong.
+    let mut nearest = nearest_inside(&simplex);
     loop {
-        let (nearest, face) = nearest_of_simplex(&simplex);
-        let lowest = lowest_difference(moving, fixed, &nearest.numerator);
-        let (along, square) = (nearest.numerator.dot(&lowest), nearest.square_of_numerator());
-        if &along * &nearest.denominator >= square {
-            return nearest.into_distance();
+        let (point, face) = match nearest.take() {
+            Some(point) => (point, mem::take(&mut simplex)),
+            None => nearest_of_simplex(&simplex),
+        };
+        let square = point.square_of_numerator();
+        if square.is_zero() {
+            return point.into_distance();
+        }
+        let [farthest, lowest] = rounded.extremes([moving, fixed], &point.numerator);
+        let lowest = lowest.minus(farthest);
+        if &point.numerator.dot(&lowest) * &point.denominator >= square {
+            return point.into_distance();
         }
         simplex = face;
         simplex.push(lowest);
     }
 }
 
-/// Returns a vertex difference `m` with the smallest `direction . m`.
-fn lowest_difference(moving: &[Vector], fixed: &[Vector], direction: &Vector) -> Vector {
-    let farthest = moving.iter().max_by_key(|p| direction.dot(p)).expect("a body has a point");
-    let nearest = fixed.iter().min_by_key(|q| direction.dot(q)).expect("a body has a point");
-    nearest.minus(farthest)
+/// Returns `min_Q n.q - max_P n.p`, exactly.
+///
+/// # Panics
+/// If a set is empty.
+pub fn gap_along([moving, fixed]: [&[Vector]; 2], n: &Vector) -> Dyadic {
+    let [farthest, lowest] = Rounded::new([moving, fixed]).extremes([moving, fixed], n);
+    n.dot(&lowest.minus(farthest))
+}
+
+/// The points of two bodies as `f64`, in units of a power of two in which the largest coordinate is between 1/2 and
+/// 1. Each coordinate has an error below `2^-50`.
+struct Rounded {
+    moving: Vec<DVec3>,
+    fixed: Vec<DVec3>,
+}
+
+impl Rounded {
+    /// Upper bound on the error of a scalar product of a rounded point and a rounded direction, whose coordinates
+    /// are at most 1: three products of factors with errors of `2^-50`, and five roundings of sums of at most 3.
+    const ERROR: f64 = 1.0 / (1_u64 << 46) as f64;
+
+    /// Rounds the points of two bodies.
+    fn new([moving, fixed]: [&[Vector]; 2]) -> Self {
+        let exponent = largest_exponent(moving.iter().chain(fixed));
+        let round = |points: &[Vector]| points.iter().map(|p| round(p, exponent)).collect();
+        Self { moving: round(moving), fixed: round(fixed) }
+    }
+
+    /// Returns the point of the moving body with the greatest exact scalar product with `direction`, and that of the
+    /// fixed body with the least one. Only points whose rounded products may be the extreme ones are compared exactly.
+    fn extremes<'a>(
+        &self,
+        [moving, fixed]: [&'a [Vector]; 2],
+        direction: &Vector,
+    ) -> [&'a Vector; 2] {
+        let along = round(direction, largest_exponent([direction]));
+        [(&self.moving, moving, 1.0), (&self.fixed, fixed, -1.0)].map(|(rounded, exact, sign)| {
+            let along = along * sign;
+            let most = rounded.iter().map(|p| along.dot(*p)).fold(f64::NEG_INFINITY, f64::max);
+            let candidates: Vec<&Vector> = rounded
+                .iter()
+                .zip(exact)
+                .filter(|(p, _)| along.dot(**p) >= most - 2.0 * Self::ERROR)
+                .map(|(_, p)| p)
+                .collect();
+            match candidates[..] {
+                [] => panic!("a body has a point"),
+                [only] => only,
+                _ => {
+                    let signed = direction.times(&Dyadic::new(sign));
+                    candidates.into_iter().max_by_key(|p| signed.dot(p)).expect("not empty")
+                }
+            }
+        })
+    }
+
+    /// Returns the simplex with which the search in `f64` ends, or another one if rounding misleads that search.
+    fn guess_simplex(&self, [moving, fixed]: [&[Vector]; 2]) -> Vec<Vector> {
+        let difference = |pair: &[usize; 2]| self.fixed[pair[1]] - self.moving[pair[0]];
+        let mut simplex = vec![[0, 0]];
+        let mut least = f64::INFINITY;
+        for _ in 0..MAX_GUESSES {
+            let corners: Vec<DVec3> = simplex.iter().map(difference).collect();
+            let (nearest, face) = guess_nearest(&corners);
+            simplex =
+                (0..simplex.len()).filter(|i| face >> i & 1 == 1).map(|i| simplex[i]).collect();
+            let square = nearest.length_squared();
+            if simplex.len() == 4 || square >= least {
+                break;
+            }
+            least = square;
+            let index = |points: &[DVec3], along: DVec3| {
+                let value = |i: &usize| along.dot(points[*i]);
+                (0..points.len()).max_by(|i, j| value(i).total_cmp(&value(j))).unwrap_or(0)
+            };
+            let lowest = [index(&self.moving, nearest), index(&self.fixed, -nearest)];
+            if simplex.contains(&lowest) || nearest.dot(difference(&lowest)) >= square {
+                break;
+            }
+            simplex.push(lowest);
+        }
+        simplex.iter().map(|[i, j]| fixed[*j].minus(&moving[*i])).collect()
+    }
+}
+
+/// Maximum number of steps of the search in `f64`.
+const MAX_GUESSES: usize = 64;
+
+/// Returns the point of a simplex of up to four corners nearest to the origin, and the face that has it as a set of
+/// bits, up to rounding.
+fn guess_nearest(corners: &[DVec3]) -> (DVec3, usize) {
+    let mut best = (corners[0], 1);
+    for face in 1..1_usize << corners.len() {
+        let chosen = (0..corners.len()).filter(|i| face >> i & 1 == 1).map(|i| corners[i]);
+        let inside = guess_inside(&chosen.collect::<Vec<_>>());
+        if let Some(point) = inside.filter(|p| p.length_squared() < best.0.length_squared()) {
+            best = (point, face);
+        }
+    }
+    best
+}
+
+/// Returns the point nearest to the origin on what the corners span, if it is in the interior of their hull, up to
+/// rounding.
+fn guess_inside(corners: &[DVec3]) -> Option<DVec3> {
+    match *corners {
+        [a] => Some(a),
+        [a, b] => {
+            let edge = b - a;
+            let share = -a.dot(edge) / edge.length_squared();
+            (share > 0.0 && share < 1.0).then(|| a + edge * share)
+        }
+        [a, b, c] => {
+            let normal = (b - a).cross(c - a);
+            let inside =
+                [(a, b), (b, c), (c, a)].iter().all(|(p, q)| p.cross(*q).dot(normal) > 0.0);
+            inside.then(|| normal * (normal.dot(a) / normal.length_squared()))
+        }
+        [a, b, c, d] => {
+            let whole = (b - a).cross(c - a).dot(d - a);
+            let parts =
+                [(b, d, c), (a, c, d), (a, d, b), (a, b, c)].map(|(p, q, r)| p.cross(q).dot(r));
+            parts.iter().all(|part| part * whole > 0.0).then_some(DVec3::ZERO)
+        }
+        _ => None,
+    }
+}
+
+/// Returns the least `e` for which all coordinates are below `2^e`.
+fn largest_exponent<'a>(points: impl IntoIterator<Item = &'a Vector>) -> i32 {
+    let coordinates = points.into_iter().flat_map(|p| &p.0);
+    coordinates.filter_map(Dyadic::log2).max().unwrap_or(0)
+}
+
+/// Rounds a vector whose coordinates are below `2^exponent`, in units of `2^exponent`.
+fn round(v: &Vector, exponent: i32) -> DVec3 {
+    DVec3::from_array([0, 1, 2].map(|i| v.0[i].to_f64_in_units_of(exponent)))
 }
 
 /// A point `numerator / denominator` with a positive denominator.

@@ -91,8 +91,18 @@ impl Dyadic {
 
     /// Returns the nearest `f64`, up to one rounding error.
     pub fn to_f64(&self) -> f64 {
+        self.to_f64_in_units_of(0)
+    }
+
+    /// Returns the number as a multiple of `2^exponent`, up to one rounding error.
+    pub fn to_f64_in_units_of(&self, exponent: i32) -> f64 {
         let (m, e) = self.leading();
-        scale_by_power(m, e)
+        scale_by_power(m, e - exponent)
+    }
+
+    /// Returns the least `e` with `|x| < 2^e`; `None` for zero.
+    pub fn log2(&self) -> Option<i32> {
+        (!self.is_zero()).then(|| self.exponent + self.mantissa.bit_len() as i32)
     }
 }
 

@@ -15,7 +15,7 @@ use colltrans::{Cast, Clearance, Contact, FreeReason, Outcome, Separation};
 use glam::DVec3;
 
 use crate::oracle::check::{Objection, require};
-use crate::oracle::distance::distance;
+use crate::oracle::distance::{distance, gap_along};
 use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
 use crate::oracle::scene::size;
 
@@ -167,7 +167,7 @@ impl<'a> GapJudge<'a> {
         let n = Vector::new(normal);
         let along = n.dot(&Vector::new(cast.direction()));
         require!(along.is_positive(), "the normal {normal} is not along the direction");
-        let left = &self.along(&n) - &(&along * &Dyadic::new(lower));
+        let left = &gap_along([&self.moving, &self.fixed], &n) - &(&along * &Dyadic::new(lower));
         let proven = !left.is_negative() && &left * &left >= &(&self.gap * &self.gap) * &n.dot(&n);
         require!(proven, "the plane does not prove {lower:e}");
         Ok(())
@@ -176,7 +176,7 @@ impl<'a> GapJudge<'a> {
     /// Checks that a plane proves a separation.
     fn check_separation(&self, of: &Separation) -> Result<(), Objection> {
         let n = Vector::new(of.normal);
-        let along = self.along(&n);
+        let along = gap_along([&self.moving, &self.fixed], &n);
         let square_along = |gap: &Dyadic| &(gap * gap) * &n.dot(&n);
         if self.radii.is_zero() {
             require!(Dyadic::new(of.margin) <= along, "a margin of {:e}", of.margin);
@@ -189,13 +189,6 @@ impl<'a> GapJudge<'a> {
         require!(beyond, "a plane no farther off than the gap");
         self.cast.verify(of).map_err(|e| Objection(e.to_string()))?;
         Ok(())
-    }
-
-    /// Returns `min_Q n.q - max_P n.p`.
-    fn along(&self, n: &Vector) -> Dyadic {
-        let nearest = self.fixed.iter().map(|q| n.dot(q)).min();
-        let farthest = self.moving.iter().map(|p| n.dot(p)).max();
-        &nearest.expect("a body has a point") - &farthest.expect("a body has a point")
     }
 }
 

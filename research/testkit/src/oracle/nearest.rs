@@ -15,7 +15,7 @@ use colltrans::{Depth, Distance, NearPoints, Pair, PlaneGap, VertexPair, Within}
 use glam::DVec3;
 
 use crate::oracle::check::{Objection, require};
-use crate::oracle::distance::{self, distance};
+use crate::oracle::distance::{self, distance, gap_along};
 use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
 use crate::oracle::scene::size;
 
@@ -247,13 +247,6 @@ fn least_along(bodies: [&[Vector]; 2], depth: Option<Ratio>, n: &Vector) -> Opti
     let here = if reach.is_positive() { &reach * &reach } else { Dyadic::ZERO };
     let here = Ratio::new(here, square);
     Some(depth.map_or(here.clone(), |depth| depth.min(here)))
-}
-
-/// Returns `min_Q n.q - max_P n.p`.
-fn gap_along([moving, fixed]: [&[Vector]; 2], n: &Vector) -> Dyadic {
-    let nearest = fixed.iter().map(|q| n.dot(q)).min();
-    let farthest = moving.iter().map(|p| n.dot(p)).max();
-    &nearest.expect("a body has a point") - &farthest.expect("a body has a point")
 }
 
 /// Checks whether a tetrahedron with a volume contains the origin.

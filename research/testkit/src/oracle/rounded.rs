@@ -15,7 +15,7 @@ use colltrans::{
 use glam::DVec3;
 
 use crate::oracle::check::{Objection, require};
-use crate::oracle::distance::{self, distance, distance_of_point};
+use crate::oracle::distance::{self, distance};
 use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
 use crate::oracle::min_gap::GapJudge;
 use crate::oracle::nearest;
@@ -102,11 +102,11 @@ impl<'a> RoundedJudge<'a> {
         noises: f64,
     ) -> Result<(), Objection> {
         let bodies = [
-            (self.pair.moving(), self.pair.moving_pose()),
-            (self.pair.fixed(), self.pair.fixed_pose()),
+            (&self.moving, self.pair.moving().radius()),
+            (&self.fixed, self.pair.fixed().radius()),
         ];
-        for (point, (body, pose)) in points.into_iter().zip(bodies) {
-            let off = distance_of_point(point, (body, &pose)).to_f64() - body.radius();
+        for (point, (core, radius)) in points.into_iter().zip(bodies) {
+            let off = distance(&[Vector::new(point)], core).to_f64() - radius;
             let most = noises * self.noise;
             let is_there = if are_common { off <= most } else { off.abs() <= most };
             require!(is_there, "a point is {off:e} off the surface");

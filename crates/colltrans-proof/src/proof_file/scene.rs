@@ -1,7 +1,7 @@
 //! Proofs of scene queries.
 //!
 //! In the list of poses the moving body comes first. Obstacle `k`, counted from 0, has pose `k + 1`. An obstacle
-//! that was inserted in several poses as one shared body is stored once.
+//! that was inserted in several poses as one shared body is stored once. Near points name the facets of the file.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -12,14 +12,20 @@ use super::body::StoredBody;
 use super::error::{ProofError, ProofFileError};
 use super::file::{Choices, Place, Placement, Query};
 use super::proven::{Proven, Verify};
+use super::statement::{facet_of_triangle, rename_triangles, triangle_of_facet};
 use super::{ProofFile, Statement};
+use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::ObstacleId;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::solve::options::Options;
-use colltrans_scene::{Obstacles, SceneProof, SceneQuery};
+use colltrans_scene::{
+    ApartProof, ClearanceProof, NearbyProof, NearestProof, Obstacles, SceneProof, SceneQuery,
+};
 use colltrans_solid::SolidCast;
+use colltrans_solid::body::Solid;
 use colltrans_solid::cast::SolidOptions;
 use colltrans_solid::kinds::{AnyBody, AnyPlaced, ByKind};
+use colltrans_solid::solve::nearest::SolidNear;
 
 /// One body in a scene, with the options of the query.
 #[derive(Debug)]
@@ -58,6 +64,23 @@ impl<'a> PlacedScene<'a> {
         Ok(ids.into_iter().map(tolerance_at).collect())
     }
 
+    /// Renames a triangle of the moving body (`which` 0) or of an obstacle (1). The index in a convex body remains: the
+    /// file has no facets of it.
+    fn renamed_triangle(
+        &self,
+        obstacle: ObstacleId,
+        which: usize,
+        triangle: u32,
+        rename: RenameTriangle,
+    ) -> Option<u32> {
+        let solid = match (which, self.moving, self.obstacles.get(obstacle)) {
+            (0, ByKind::Solid(placed), _) => placed.body,
+            (1, _, Some((ByKind::Solid(body), _))) => body,
+            _ => return Some(triangle),
+        };
+        rename(solid, triangle)
+    }
+
     fn checked_query(&self) -> Result<SceneQuery<'_>, QueryError> {
         let Choices { min_gap, graze_tolerance, tolerance, start_overlap } = self.choices;
         if let Some(tolerance) = tolerance.filter(|by| !(0.0..f64::INFINITY).contains(by)) {
@@ -72,12 +95,78 @@ impl<'a> PlacedScene<'a> {
     }
 }
 
-impl<'s, P> Verify<'_, PlacedScene<'s>> for P
+/// Translates between a triangle of a solid and a facet of the file.
+type RenameTriangle = fn(&Solid, u32) -> Option<u32>;
+
+/// A proof about a scene whose near points are in triangles of solids. A file identifies them by its facets, a query by
+/// their positions in the trees of the bodies.
+pub(super) trait SceneStatement: Clone
+where
+    for<'p> SceneProof<'p>: From<&'p Self>,
+{
+    /// Calls a function for the near points in triangles, with their obstacle.
+    fn visit_near_points(&mut self, visit: impl FnMut(ObstacleId, &mut SolidNear));
+
+    /// Returns the proof with other indices of triangles. Returns `None` if an index has no replacement.
+    fn with_renamed_triangles(
+        &self,
+        scene: &PlacedScene<'_>,
+        rename: RenameTriangle,
+    ) -> Option<Self> {
+        let (mut renamed, mut is_known) = (self.clone(), true);
+        renamed.visit_near_points(|obstacle, near| {
+            match rename_triangles(*near, |k, t| scene.renamed_triangle(obstacle, k, t, rename)) {
+                Some(found) => *near = found,
+                None => is_known = false,
+            }
+        });
+        is_known.then_some(renamed)
+    }
+}
+
+impl SceneStatement for NearestProof {
+    fn visit_near_points(&mut self, mut visit: impl FnMut(ObstacleId, &mut SolidNear)) {
+        if let ByKind::Solid(near) = &mut self.near {
+            visit(self.obstacle, near);
+        }
+        visit_apart(&mut self.apart, visit);
+    }
+}
+
+impl SceneStatement for NearbyProof {
+    fn visit_near_points(&mut self, mut visit: impl FnMut(ObstacleId, &mut SolidNear)) {
+        for (obstacle, near) in &mut self.closer {
+            if let ByKind::Solid(near) = near {
+                visit(*obstacle, near);
+            }
+        }
+        visit_apart(&mut self.apart, visit);
+    }
+}
+
+impl SceneStatement for ClearanceProof {
+    fn visit_near_points(&mut self, _: impl FnMut(ObstacleId, &mut SolidNear)) {}
+}
+
+/// Calls a function for the near points of proofs that obstacles are apart.
+fn visit_apart(
+    apart: &mut [(ObstacleId, ApartProof)],
+    mut visit: impl FnMut(ObstacleId, &mut SolidNear),
+) {
+    for (obstacle, proof) in apart {
+        if let ByKind::Solid(certificate) = proof {
+            visit(*obstacle, &mut certificate.near);
+        }
+    }
+}
+
+impl<'s, P: SceneStatement> Verify<'_, PlacedScene<'s>> for P
 where
     for<'p> SceneProof<'p>: From<&'p P>,
 {
     fn verify(&self, scene: &PlacedScene<'s>) -> Result<Proven<'static>, ProofError> {
-        scene.checked_query()?.verify(self)?;
+        let renamed = self.with_renamed_triangles(scene, triangle_of_facet);
+        scene.checked_query()?.verify(&renamed.ok_or(CertificateError::StartClaim)?)?;
         Ok(Proven::Statement)
     }
 }
@@ -114,7 +203,8 @@ impl ProofFile {
     pub fn of_nearest(among: &SceneQuery<'_>) -> Result<Option<Self>, ProofFileError> {
         let stored = StoredScene::of_scene(among)?;
         let proven = stored.placed_scene()?.checked_query()?.certified_nearest()?;
-        Ok(proven.map(|(_, proof)| stored.with_statement(Statement::Nearest(proof))))
+        let Some((_, proof)) = proven else { return Ok(None) };
+        stored.with_statement(&proof, Statement::Nearest).map(Some)
     }
 
     /// Proves by [`SceneQuery::certified_within`] which obstacles are closer than a length.
@@ -125,7 +215,7 @@ impl ProofFile {
     pub fn of_within(among: &SceneQuery<'_>, length: f64) -> Result<Self, ProofFileError> {
         let stored = StoredScene::of_scene(among)?;
         let (_, proof) = stored.placed_scene()?.checked_query()?.certified_within(length)?;
-        Ok(stored.with_statement(Statement::Within(proof)))
+        stored.with_statement(&proof, Statement::Within)
     }
 
     /// Proves by [`SceneQuery::certified_clearance`] which obstacle blocks the moving body, and that none blocks
@@ -140,7 +230,7 @@ impl ProofFile {
     ) -> Result<Self, ProofFileError> {
         let stored = StoredScene::of_scene(among)?;
         let (_, proof) = stored.placed_scene()?.checked_query()?.certified_clearance(direction)?;
-        Ok(stored.with_statement(Statement::SceneClearance(proof)))
+        stored.with_statement(&proof, Statement::SceneClearance)
     }
 }
 
@@ -181,8 +271,17 @@ impl StoredScene {
         PlacedScene::new(&self.bodies, &self.places, self.choices)
     }
 
-    fn with_statement(self, statement: Statement) -> ProofFile {
+    fn with_statement<P: SceneStatement>(
+        self,
+        proof: &P,
+        statement: impl Fn(P) -> Statement,
+    ) -> Result<ProofFile, ProofFileError>
+    where
+        for<'p> SceneProof<'p>: From<&'p P>,
+    {
+        let stored = proof.with_renamed_triangles(&self.placed_scene()?, facet_of_triangle);
+        let statement = statement(stored.ok_or(ProofFileError::Statement)?);
         let (placement, query) = (Placement::Poses(self.places), Query::Scene(self.choices));
-        ProofFile::new(self.bodies, placement, query, statement)
+        Ok(ProofFile::new(self.bodies, placement, query, statement))
     }
 }

@@ -211,10 +211,7 @@ impl Verify<'_, Pair<'_>> for Depth {
 /// The certificate of a file identifies triangles by the facets of the file.
 impl Verify<'_, Pair<'_, Solid>> for DistanceCertificate {
     fn verify(&self, pair: &Pair<'_, Solid>) -> Result<Proven<'static>, ProofError> {
-        let place = |k: usize, facet: u32| {
-            let facets = [pair.moving(), pair.fixed()][k].facet_indices();
-            facets.iter().position(|known| known.0 == facet).map(|at| at as u32)
-        };
+        let place = |k: usize, facet| triangle_of_facet([pair.moving(), pair.fixed()][k], facet);
         let near = rename_triangles(self.near, place).ok_or(CertificateError::StartClaim)?;
         pair.verify(&Self { near, ..self.clone() })?;
         Ok(Proven::Statement)
@@ -226,13 +223,24 @@ pub(super) fn with_file_facets(
     of: DistanceCertificate,
     bodies: [&Solid; 2],
 ) -> DistanceCertificate {
-    let number = |k: usize, at: u32| Some(bodies[k].facet_indices().get(at as usize)?.0);
+    let number = |k: usize, at| facet_of_triangle(bodies[k], at);
     let near = rename_triangles(of.near, number).unwrap_or(of.near);
     DistanceCertificate { near, ..of }
 }
 
+/// Returns the facet of the file to which a triangle of a solid belongs. Returns `None` if the triangle does not exist.
+pub(super) fn facet_of_triangle(solid: &Solid, triangle: u32) -> Option<u32> {
+    Some(solid.facet_indices().get(triangle as usize)?.0)
+}
+
+/// Returns the triangle of a solid to which a facet of the file belongs. Returns `None` if the facet does not exist.
+pub(super) fn triangle_of_facet(solid: &Solid, facet: u32) -> Option<u32> {
+    let found = solid.facet_indices().iter().position(|known| known.0 == facet);
+    found.map(|triangle| triangle as u32)
+}
+
 /// Replaces the indices of triangles. Returns `None` if an index has no replacement.
-fn rename_triangles(
+pub(super) fn rename_triangles(
     near: SolidNear,
     name: impl Fn(usize, u32) -> Option<u32>,
 ) -> Option<SolidNear> {

@@ -4,6 +4,7 @@ The checker needs neither the extension nor the shared helpers, and is loaded fr
 ``python3 -m pytest --noconftest python/tests/test_check.py`` runs anywhere.
 """
 
+import ast
 import importlib.util
 import json
 import subprocess
@@ -362,6 +363,25 @@ def test_the_checker_runs_without_the_package() -> None:
     claim = proof("contacts")
     claim["statement"]["contacts"] = {}
     assert refused(claim), "it claims nothing"
+
+
+def test_each_part_of_the_checker_uses_only_earlier_parts() -> None:
+    parts = ast.parse(FILE.read_text()).body
+    line_of: dict[str, int] = {}
+    for part in parts:
+        if isinstance(part, ast.FunctionDef | ast.ClassDef):
+            line_of[part.name] = part.lineno
+        elif isinstance(part, ast.Assign | ast.AnnAssign):
+            targets = part.targets if isinstance(part, ast.Assign) else [part.target]
+            names = (n for target in targets for n in ast.walk(target))
+            line_of |= {n.id: part.lineno for n in names if isinstance(n, ast.Name)}
+    later = [
+        (part.lineno, name.id)
+        for part in parts
+        for name in ast.walk(part)
+        if isinstance(name, ast.Name) and line_of.get(name.id, 0) > part.lineno
+    ]
+    assert len(line_of) > 100 and later == []
 
 
 def test_a_margin_is_that_of_the_shadows_not_along_a_tilted_normal() -> None:

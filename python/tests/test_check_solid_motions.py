@@ -122,16 +122,15 @@ def test_a_solid_inside_the_other_is_refused() -> None:
     ]
     assert refused(inside)
     with pytest.raises(check.RefusedError):
-        check.start(*placed(inside))
-    check.start(*placed(file))
+        check.check_start(*placed(inside))
+    check.check_start(*placed(file))
 
 
 def placed(file: Any) -> tuple[Any, Any]:
     """Returns the first span of a file, and its parts."""
-    shapes = [check.Body.shape(body) for body in file["bodies"]]
+    shapes = [check.Shape.read(body) for body in file["bodies"]]
     parts = [
-        check.Parts.read(points, facets, of)
-        for (points, facets), of in zip(shapes, value_at(file, PARTS), strict=True)
+        check.Parts.read(shape, of) for shape, of in zip(shapes, value_at(file, PARTS), strict=True)
     ]
     origin = [check._ZERO]
     spans = check.spans(value_at(file, MOVERS), [origin, origin], check.Fraction())

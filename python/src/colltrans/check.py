@@ -4,7 +4,7 @@ The checker shares no code with the library and rounds nothing: every number of 
 fraction that its 64 bits represent, and the nine entries of a pose place a body. It needs no other
 package, so ``python check.py PROOF`` works without the extension. It is a single file on purpose: a
 reader who does not trust the library can read it from top to bottom, because each part uses only
-earlier parts, and run it anywhere.
+earlier parts, and run it anywhere. The last part, "The whole file", lists the kinds of claims.
 
 Notation: moving body ``P``, fixed body ``Q``, direction ``d``, all points in the world.
 
@@ -19,7 +19,8 @@ Notation: moving body ``P``, fixed body ``Q``, direction ``d``, all points in th
   claimed overlap must not be smaller.
 - *Rounded bodies* are hulls of points swept by a ball. The sum ``r`` of both radii is added to each
   gap: bodies are ``g`` apart where the hulls are ``g + r`` apart, and bodies whose hulls are ``x``
-  apart, or ``x`` deep, have the depth ``r - x``, or ``r + x``. Boxes are wider by the radius.
+  apart, or ``x`` deep, have the depth ``r - x``, or ``r + x``. Boxes are wider by the radius. The
+  same holds for the facets of rounded solids.
 - *Bodies.* The faces of a convex body, if it has any, form a closed surface with all vertices, and
   no neighbouring vertex is far above a face. No proof depends on the faces. If they may not be
   those of the hull of the vertices, this is reported as unchecked; ``colltrans verify`` rejects
@@ -28,10 +29,8 @@ Notation: moving body ``P``, fixed body ``Q``, direction ``d``, all points in th
   never meet, and ``(min_Q n'.q - max_P n'.p) / |n'|`` is a lower bound of the distance of their
   shadows. The claimed margin must not be larger.
 - *A minimum gap* ``g`` replaces contact by a distance: ``g |n|`` is subtracted from what planes
-  prove, and at the upper bound the weighted means of the pairs are at most ``g`` apart. For solids
-  it is not checked where two facets are.
-- *Radii* of rounded bodies are added to the gap: all planes, points and facets are those of the
-  bodies without radius.
+  prove, and at the upper bound the weighted means of the pairs are at most ``g`` apart. Two facets
+  of solids meet where they are ``g`` apart.
 - *Distance.* ``min_Q n.q - max_P n.p`` over all vertices proves a lower bound. The weighted means
   of the pairs, one point of each body, prove an upper bound. For a distance of 0 the differences of
   the pairs enclose the origin.
@@ -40,8 +39,10 @@ Notation: moving body ``P``, fixed body ``Q``, direction ``d``, all points in th
   a ray that meets none of its edges shows. No triangle is nearer than claimed, or turned away.
 - *Solids.* A plane between them as above, and the translation at which the two stopping facets
   meet. The claims about all other facets (the covers) are not checked here; ``colltrans verify``
-  checks them. For a distance of solids the two points are checked, but not that no others are
-  nearer.
+  checks them.
+- *Distance of solids.* The two points, one in a facet of each body. A search over pairs of boxes
+  and then facets shows that no others are nearer, and a ray that no shell is inside the other
+  solid. The cover of the proof is not used.
 - *One body among many.* Every obstacle is checked: by its claim, as above, or else by the bounding
   boxes of both bodies, with their distance or the translation at which they meet.
 - *Motions.* For bodies that turn: at the time of each plane, its gap over all vertices, with sine
@@ -64,8 +65,8 @@ Notation: moving body ``P``, fixed body ``Q``, direction ``d``, all points in th
   blocks them. It is not checked that the bodies do not overlap at the start, nor how they were
   shrunk.
 
-Exit codes: 0 if the whole proof holds, 7 if the checked part holds (always for solids), 6 if a
-claim does not hold, 3 if the file is not a proof, 1 if nothing in it can be checked here, 2 for
+Exit codes: 0 if the whole proof holds, 7 if the checked parts hold but not all were checked, 6 if
+a claim does not hold, 3 if the file is not a proof, 1 if nothing in it can be checked here, 2 for
 wrong usage.
 """
 
@@ -80,14 +81,24 @@ from fractions import Fraction
 from functools import cache
 from itertools import combinations, pairwise, product
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
+
+# Formats and limits
+# ------------------
 
 FORMAT = "colltrans proof"
 VERSION = 2
-Vector: TypeAlias = tuple[Fraction, Fraction, Fraction]
+Number = TypeVar("Number", int, Fraction)
+Triple: TypeAlias = tuple[Number, Number, Number]
+Vector: TypeAlias = Triple[Fraction]
+#: A vector and the corners of a facet with integer coordinates.
+Whole: TypeAlias = Triple[int]
+Corners: TypeAlias = tuple[Whole, Whole, Whole]
 Matrix: TypeAlias = tuple[Vector, Vector, Vector]
 Triangle: TypeAlias = tuple[Vector, Vector, Vector]
-
+#: The least and the largest coordinates of a box.
+Bounds: TypeAlias = tuple[Triple[Number], Triple[Number]]
+Facet: TypeAlias = tuple[int, int, int]
 #: Rounding error of one operation.
 _U = Fraction(1, 2**53)
 #: Maximum deviation of the length of a unit vector from 1: the library's limit plus an eighth,
@@ -113,13 +124,20 @@ MOST = 2**200
 _RANGE = (Fraction(1, MOST), Fraction(MOST))
 #: The minimum gap if there is none.
 _NO_GAP = Fraction()
-#: Maximum distance of a face from its plane, in sizes of the body, beyond its ``hull_error``; see
-#: :func:`are_own_faces`.
+#: Maximum distance of a face from its plane, in sizes of the body, beyond its ``hull_error``.
 _PLANE = Fraction(1, 2**20)
 #: Maximum deviation of the products of a pose's axes from those of a rotation.
 _TURN = Fraction(1, 10**6)
-
-
+#: Absolute or relative error of sines, cosines and roots.
+_TINY = Fraction(1, 2**120)
+#: Binary digits after the point in their computation.
+_DIGITS = 160
+#: Relative error of a computed position. Claimed depths refer to such positions.
+_POSE = 256 * _U
+#: Error of facet points in the world, relative to the size, up to which signs are certain.
+_SURE = Fraction(1, 2**96)
+#: Maximum number of pairs of boxes in a search for two facets.
+MAX_PAIRS = 5_000_000
 #: Exceptions of reading a malformed file. The first one comes from numbers out of range.
 _MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
@@ -140,6 +158,12 @@ class Report:
     unchecked: list[str] = field(default_factory=list)
     #: Whether a part of the claims was not checked.
     partly: bool = False
+    #: Whether the proof has a cover that was not read, because its claim was checked without it.
+    has_cover: bool = False
+
+
+# Fields of the file
+# ------------------
 
 
 def number(value: Any) -> Fraction:
@@ -213,11 +237,6 @@ def is_text(value: Any) -> bool:
     return isinstance(value, str) and not any("\ud800" <= c <= "\udfff" for c in value)
 
 
-def node_of_tree(value: Any, end: int) -> int:
-    """Returns a node of a tree in preorder: -1, or a facet index below ``end``."""
-    return -1 if type(value) is int and value == -1 else whole(value, end)
-
-
 def truth(value: Any) -> bool:
     """Returns a boolean."""
     if not isinstance(value, bool):
@@ -238,11 +257,23 @@ def bounded_vector(values: Any, what: str) -> Vector:
     return bounded(x, MOST, what), bounded(y, MOST, what), bounded(z, MOST, what)
 
 
-def dot(a: Vector, b: Vector) -> Fraction:
+# Vectors
+# -------
+
+_ZERO: Vector = (Fraction(), Fraction(), Fraction())
+_UNITS: tuple[Vector, Vector, Vector] = (
+    (Fraction(1), Fraction(), Fraction()),
+    (Fraction(), Fraction(1), Fraction()),
+    (Fraction(), Fraction(), Fraction(1)),
+)
+_ONES: Vector = (Fraction(1), Fraction(1), Fraction(1))
+
+
+def dot(a: Triple[Number], b: Triple[Number]) -> Number:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def cross(a: Vector, b: Vector) -> Vector:
+def cross(a: Triple[Number], b: Triple[Number]) -> Triple[Number]:
     return (
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -250,16 +281,285 @@ def cross(a: Vector, b: Vector) -> Vector:
     )
 
 
-def scaled(a: Vector, by: Fraction) -> Vector:
+def scaled(a: Triple[Number], by: Number) -> Triple[Number]:
     return a[0] * by, a[1] * by, a[2] * by
 
 
-def plus(a: Vector, b: Vector) -> Vector:
+def plus(a: Triple[Number], b: Triple[Number]) -> Triple[Number]:
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
-def minus(a: Vector, b: Vector) -> Vector:
+def minus(a: Triple[Number], b: Triple[Number]) -> Triple[Number]:
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def negative(a: Triple[Number]) -> Triple[Number]:
+    return -a[0], -a[1], -a[2]
+
+
+def above(length: Fraction, square: Fraction) -> bool:
+    """Checks whether a length is at least the root of a square."""
+    return length >= 0 and length * length >= square
+
+
+def is_within(p: Vector, q: Vector, length: Fraction) -> bool:
+    """Checks whether two points are at most a length apart."""
+    between = minus(q, p)
+    return above(length, dot(between, between))
+
+
+def root_above(square: Fraction) -> Fraction:
+    """Returns an upper bound of the root of a number, with a relative error of at most `_TINY`."""
+    if square <= 0:
+        return Fraction()
+    bits = (square.numerator.bit_length() - square.denominator.bit_length()) // 2
+    places = _DIGITS - bits
+    scale = Fraction(2) ** (2 * places)
+    return Fraction(math.isqrt(math.ceil(square * scale)) + 1) / Fraction(2) ** places
+
+
+def unit(normal: Vector, what: str = "the normal") -> None:
+    if not (1 - _UNIT_VECTOR) ** 2 <= dot(normal, normal) <= (1 + _UNIT_VECTOR) ** 2:
+        raise RefusedError(f"{what} is not a unit vector")
+
+
+def mean(points: Sequence[Vector], weights: Sequence[Any]) -> Vector:
+    """Returns the weighted mean of points."""
+    shares = [w if isinstance(w, Fraction) else number(w) for w in listed(weights)]
+    total = sum(shares, Fraction())
+    if len(shares) != len(points) or min(shares) < 0 or abs(total - 1) > _UNIT_VECTOR:
+        raise RefusedError("the weights are not those of a mean")
+    found = _ZERO
+    for point, share in zip(points, shares, strict=True):
+        found = plus(found, scaled(point, share / total))
+    return found
+
+
+def area(points: list[Vector], face: list[int]) -> Vector:
+    """Returns twice the area vector of a polygon."""
+    total = _ZERO
+    for a, b in pairwise(face[1:]):
+        side, other = minus(points[a], points[face[0]]), minus(points[b], points[face[0]])
+        total = plus(total, cross(side, other))
+    return total
+
+
+def line_range(points: Sequence[Vector], d: Vector) -> tuple[Fraction, Fraction] | None:
+    """Returns the least and the largest ``t`` for which ``t d`` is in the convex hull of points.
+
+    Both occur at points, on segments or in triangles of the points; None if there is no such ``t``.
+    """
+    square = dot(d, d)
+    e1 = cross(d, min(_UNITS, key=lambda e: abs(dot(e, d))))
+    e2 = cross(d, e1)
+    shadows = [(dot(e1, m), dot(e2, m)) for m in points]
+    times = [dot(d, m) / square for m in points]
+    found = [t for s, t in zip(shadows, times, strict=True) if not any(s)]
+
+    def turn(i: int, j: int) -> Fraction:
+        (a, b), (x, y) = shadows[i], shadows[j]
+        return a * y - b * x
+
+    for i, j in combinations(range(len(points)), 2):
+        a, b = shadows[i], shadows[j]
+        if turn(i, j) == 0 and a[0] * b[0] + a[1] * b[1] < 0:
+            # The origin is between the two shadows; use the coordinate in which they differ.
+            k = 0 if a[0] != b[0] else 1
+            share = a[k] / (a[k] - b[k])
+            found.append(times[i] + share * (times[j] - times[i]))
+    for i, j, k in combinations(range(len(points)), 3):
+        u, v, w = turn(j, k), turn(k, i), turn(i, j)
+        if (u > 0 and v > 0 and w > 0) or (u < 0 and v < 0 and w < 0):
+            found.append((u * times[i] + v * times[j] + w * times[k]) / (u + v + w))
+    return (min(found), max(found)) if found else None
+
+
+def encloses(corners: Sequence[Vector]) -> bool:
+    """Checks whether a tetrahedron with a volume contains the origin."""
+    a, b, c, d = corners
+    faces = ((b, c, d), (a, d, c), (a, b, d), (a, c, b))
+    signs = [dot(u, cross(v, w)) for u, v, w in faces]
+    return any(signs) and (min(signs) >= 0 or max(signs) <= 0)
+
+
+def winds(at: Vector, facets: list[Triangle]) -> int:
+    """Returns the winding number of a surface around a point that is not on it."""
+    for k in range(1, 60):
+        way = (Fraction(1), Fraction(k, 61), Fraction(k * k, 3721))
+        count, sure = 0, True
+        for triangle in facets:
+            a, b, c = (minus(v, at) for v in triangle)
+            volume = dot(cross(a, b), c)
+            if volume == 0:
+                # A ray that leaves the plane at the point does not meet it again.
+                normal = cross(minus(b, a), minus(c, a))
+                if any(normal) and dot(normal, way) == 0:
+                    sure = False
+                    break
+                continue
+            sides = [dot(cross(u, v), way) for u, v in ((a, b), (b, c), (c, a))]
+            if 0 in sides:
+                sure = False
+                break
+            if min(sides) < 0 < max(sides):
+                continue
+            if (volume > 0) == (sides[0] > 0):
+                count += 1 if sides[0] > 0 else -1
+        if sure:
+            return count
+    raise RefusedError("no ray decides whether a point is inside")
+
+
+def shells(facets: list[Triangle]) -> list[Vector]:
+    """Returns a point of each connected part of a surface."""
+    leads: dict[Vector, Vector] = {}
+
+    def root(v: Vector) -> Vector:
+        while leads.setdefault(v, v) != v:
+            # Path halving keeps the paths short.
+            leads[v] = leads[leads[v]]
+            v = leads[v]
+        return v
+
+    for a, b, c in facets:
+        leads[root(b)] = root(a)
+        leads[root(c)] = root(a)
+    return [v for v in leads if root(v) == v]
+
+
+def is_nested(surface: list[Triangle], around: list[Triangle]) -> bool:
+    """Checks whether a shell of a surface is inside a closed surface that it does not meet."""
+    return any(winds(v, around) > 0 for v in shells(surface)) if around else False
+
+
+# Boxes and facets
+# ----------------
+
+
+def box_of(points: Sequence[Triple[Number]]) -> Bounds[Number]:
+    """Returns the box of points."""
+    xs, ys, zs = ([p[k] for p in points] for k in range(3))
+    return (min(xs), min(ys), min(zs)), (max(xs), max(ys), max(zs))
+
+
+def box_corners(bounds: Bounds[Fraction]) -> list[Vector]:
+    return [(x[0], y[1], z[2]) for x, y, z in product(bounds, repeat=3)]
+
+
+def box_gap(p: Bounds[Number], q: Bounds[Number]) -> Number:
+    """Returns the squared distance of two boxes."""
+    x, y, z = (max(q[0][k] - p[1][k], p[0][k] - q[1][k]) for k in range(3))
+    # A negative value is an overlap along the axis.
+    x, y, z = max(x, x - x), max(y, y - y), max(z, z - z)
+    return x * x + y * y + z * z
+
+
+@dataclass
+class Box:
+    """A box of facets with integer coordinates: a single facet, or two boxes."""
+
+    bounds: Bounds[int]
+    facet: int | None
+    parts: tuple[Box, ...] = ()
+
+    def extent(self) -> int:
+        return max(minus(self.bounds[1], self.bounds[0]))
+
+
+def box_tree(triangles: Sequence[Corners]) -> Box:
+    """Builds a tree of boxes, halved along the longest side."""
+
+    def build(all_of: list[Box]) -> Box:
+        if len(all_of) == 1:
+            return all_of[0]
+        low, high = bounds = box_of([v for b in all_of for v in b.bounds])
+        axis = max(range(3), key=lambda k: high[k] - low[k])
+        all_of.sort(key=lambda b: b.bounds[0][axis] + b.bounds[1][axis])
+        half = len(all_of) // 2
+        return Box(bounds, None, (build(all_of[:half]), build(all_of[half:])))
+
+    return build([Box(box_of(t), k) for k, t in enumerate(triangles)])
+
+
+def near_facets(
+    trees: tuple[Box, Box], is_far: Callable[[Bounds[int], Bounds[int]], bool]
+) -> Iterator[tuple[int, int] | None]:
+    """Visits pairs of boxes of two trees, and yields each pair of facets that it comes to.
+
+    It skips pairs of boxes with ``is_far``, and yields None for each other pair of boxes, so
+    that callers can count.
+    """
+    stack = [trees]
+    while stack:
+        a, b = stack.pop()
+        yield None
+        if is_far(a.bounds, b.bounds):
+            continue
+        if a.facet is None and (b.facet is not None or a.extent() >= b.extent()):
+            stack += [(part, b) for part in a.parts]
+        elif b.facet is None:
+            stack += [(a, part) for part in b.parts]
+        elif a.facet is not None:
+            yield a.facet, b.facet
+
+
+def in_units(points: Sequence[Sequence[Vector]]) -> tuple[list[list[Whole]], int]:
+    """Returns points with integer coordinates, and the number of units of length 1."""
+    unit_of = math.lcm(*(x.denominator for each in points for v in each for x in v))
+
+    def units(v: Vector) -> Whole:
+        return int(v[0] * unit_of), int(v[1] * unit_of), int(v[2] * unit_of)
+
+    return [[units(v) for v in each] for each in points], unit_of
+
+
+def edges(corners: Sequence[Triple[Number]]) -> list[Triple[Number]]:
+    """Returns the edges of a facet; a point has none."""
+    count = len(corners)
+    return [minus(corners[k], corners[k - 1]) for k in range(count) if count > 1]
+
+
+def are_apart(
+    f: Sequence[Triple[Number]],
+    g: Sequence[Triple[Number]],
+    square: Fraction | int,
+    strictly: bool = False,
+) -> bool:
+    """Checks whether the hulls of one or three points each are the root of a square apart.
+
+    They are if a plane leaves this distance. The nearest points are in corners, edges or facets, so
+    one of these normals leaves the whole distance: the vector between two corners, the
+    perpendicular from a corner to an edge or a facet, or a vector across two edges.
+    """
+
+    def normals() -> Iterator[Triple[Number]]:
+        p_edges, q_edges = edges(f), edges(g)
+        yield from (cross(sides[0], sides[1]) for sides in (p_edges, q_edges) if sides)
+        for p, q in product(f, g):
+            way = minus(q, p)
+            yield way
+            for side in p_edges + q_edges:
+                yield minus(scaled(way, dot(side, side)), scaled(side, dot(way, side)))
+        yield from (cross(u, v) for u, v in product(p_edges, q_edges))
+
+    for n in normals():
+        own, other = [dot(n, p) for p in f], [dot(n, q) for q in g]
+        gap = max(min(other) - max(own), min(own) - max(other))
+        least = square * dot(n, n)
+        if gap > 0 and (gap * gap > least if strictly else gap * gap >= least):
+            return True
+    return False
+
+
+def is_around(facets: list[Triangle], at: Vector, off: Fraction) -> bool:
+    """Checks whether a closed surface surrounds a point at a distance."""
+
+    apart = all(are_apart([at], triangle, off * off) for triangle in facets)
+    return apart and winds(at, facets) > 0
+
+
+# Bodies
+# ------
 
 
 def check_closed(points: list[Vector], facets: list[tuple[int, int, int]]) -> None:
@@ -284,128 +584,18 @@ def check_closed(points: list[Vector], facets: list[tuple[int, int, int]]) -> No
         raise RefusedError("a surface not marked as open has no facet with an area")
 
 
-#: The kinds of bodies.
-_KINDS = "convex, pieces, rounded"
+def is_thin(points: list[Vector], faces: list[list[int]]) -> bool:
+    """Checks whether a body is so thin that rounding can hide which faces it has."""
+    room = 512 * _U * Fraction(math.sqrt(max(float(dot(v, v)) for v in points)))
+    for normal in (area(points, face) for face in faces):
+        heights = [dot(normal, v) for v in points]
+        if (max(heights) - min(heights)) ** 2 <= room * room * dot(normal, normal):
+            return True
+    return False
 
 
-@dataclass(frozen=True)
-class Body:
-    """Points in the body frame and the pose ``R x + t``; a solid also has facets.
-
-    A convex body is the hull of its points. Both kinds are swept by a ball of the radius.
-    """
-
-    points: list[Vector]
-    rows: Matrix
-    offset: Vector
-    facets: list[tuple[int, int, int]]
-    radius: Fraction = Fraction()
-
-    @staticmethod
-    def shape(shape: Any) -> tuple[list[Vector], list[tuple[int, int, int]]]:
-        """Returns the points in the body frame, and the facets."""
-        points: list[Vector] = []
-        facets: list[tuple[int, int, int]] = []
-        ((kind, content),) = shape.items()
-        if kind == "convex":
-            content = fields(
-                content, "vertices faces input_indices hull_error", "input_excess radius"
-            )
-            points = [place(v) for v in listed(content["vertices"])]
-            described(points, content)
-        elif kind in ("pieces", "rounded"):
-            if kind == "rounded":
-                content = fields(content, "pieces radius")["pieces"]
-            for each in listed(content):
-                piece = fields(each, "vertices triangles", "open")
-                if not isinstance(each.get("open", False), bool):
-                    raise NoProofError("the field open of a piece is not a boolean")
-                base = len(points)
-                points += [place(v) for v in listed(piece["vertices"])]
-                begin = len(facets)
-                for triangle in listed(piece["triangles"]):
-                    a, b, c = listed(triangle, 3)
-                    corners = [base + whole(k, len(points) - base) for k in (a, b, c)]
-                    facets.append((corners[0], corners[1], corners[2]))
-                if {k for facet in facets[begin:] for k in facet} != set(range(base, len(points))):
-                    raise RefusedError("a piece has a vertex that no facet uses")
-                if not each.get("open", False):
-                    check_closed(points, facets[begin:])
-        else:
-            raise NoProofError(f"unknown kind of body {kind!r}; known kinds: {_KINDS}")
-        if not points or (kind != "convex" and not facets):
-            raise NoProofError("a body has no points or no facets")
-        return points, facets
-
-    @classmethod
-    def placed(cls, points: list[Vector], facets: list[tuple[int, int, int]], pose: Any) -> Body:
-        pose = fields(pose, "matrix translation")
-        entries = [number(x) for x in listed(pose["matrix"], 9)]
-        columns = [x if abs(x) >= _RANGE[0] else Fraction() for x in entries]
-        x, y, z = (tuple(columns[k::3]) for k in range(3))
-        rows: Matrix = ((x[0], x[1], x[2]), (y[0], y[1], y[2]), (z[0], z[1], z[2]))
-        for i, j in product(range(3), repeat=2):
-            entry = sum((row[i] * row[j] for row in rows), Fraction())
-            if abs(entry - (i == j)) > _TURN:
-                raise NoProofError("a pose is not a rotation")
-        if dot(rows[0], cross(rows[1], rows[2])) < 0:
-            raise NoProofError("a pose is a reflection")
-        return cls(points, rows, place(pose["translation"]), facets)
-
-    @staticmethod
-    def radius_of(shape: Any) -> Fraction:
-        """Returns the radius of a rounded body, 0 for other bodies."""
-        ((kind, content),) = shape.items()
-        said = None if kind == "pieces" else content.get("radius")
-        radius = number(0.0 if said is None else said)
-        if radius != 0 and not _RANGE[0] <= radius <= _RANGE[1]:
-            raise RefusedError(f"a radius of {float(radius)!r} is not from 2^-200 to 2^200")
-        return radius
-
-    def at(self, k: int) -> Vector:
-        """Returns a point in the world."""
-        v = self.points[k]
-        x, y, z = (dot(row, v) for row in self.rows)
-        return plus((x, y, z), self.offset)
-
-    @property
-    def is_convex(self) -> bool:
-        """Checks whether the body is the hull of its points; other bodies have facets."""
-        return not self.facets
-
-    def facet(self, k: int) -> Triangle:
-        a, b, c = self.facets[k]
-        return self.at(a), self.at(b), self.at(c)
-
-    def turn(self, v: Vector) -> Vector:
-        """Rotates a vector of the body frame to the world."""
-        x, y, z = (dot(row, v) for row in self.rows)
-        return x, y, z
-
-    def skew(self) -> Fraction:
-        """Returns a bound of the deviation of the axis products from those of a rotation."""
-        products = (
-            abs(dot(self.rows[i], self.rows[j]) - (i == j)) for i, j in product(range(3), repeat=2)
-        )
-        return max(products) + _TINY
-
-    def heights(self, normal: Vector) -> Iterator[Fraction]:
-        """Yields the heights of all points along a normal of the world."""
-        columns = [
-            sum((normal[r] * self.rows[r][c] for r in range(3)), Fraction()) for c in range(3)
-        ]
-        local = (columns[0], columns[1], columns[2])
-        base = dot(normal, self.offset)
-        for v in self.points:
-            yield dot(local, v) + base
-
-    def reach(self) -> float:
-        """Returns the largest distance of a point from the origin of the frame, rounded."""
-        return math.sqrt(max(float(dot(v, v)) for v in self.points))
-
-
-def described(points: list[Vector], content: Any) -> None:
-    """Checks the data of a convex body besides its vertices against them."""
+def convex_data(points: list[Vector], content: Any) -> tuple[list[list[int]], Fraction]:
+    """Returns the faces and the hull error of a convex body, after a check against its vertices."""
     inputs = [whole(k, 2**32) for k in listed(content["input_indices"])]
     # After shrinking or growing, several vertices may come from one input vertex.
     if len(inputs) != len(points):
@@ -413,8 +603,8 @@ def described(points: list[Vector], content: Any) -> None:
     error = number(content["hull_error"])
     if not 0 <= error <= _RANGE[1]:
         raise RefusedError(f"a hull error of {float(error)!r} is negative, or larger than any body")
-    said = content["input_excess"]
-    excess = number(0.0 if said is None else said)
+    stored = content["input_excess"]
+    excess = number(0.0 if stored is None else stored)
     if not 0 <= excess <= error:
         raise RefusedError(
             f"an input excess of {float(excess)!r} is negative, or over the hull error"
@@ -440,34 +630,137 @@ def described(points: list[Vector], content: Any) -> None:
             is_off = (above > 0 or k in face) and above * above > room * room * square
             if is_off and not is_thin(points, faces):
                 raise RefusedError(f"vertex {k} is not where the faces around it are")
+    return faces, error
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A body in its own frame: the hull of its points, or facets; swept by a ball of the radius."""
+
+    points: list[Vector]
+    #: The facets of a solid, by their corners.
+    facets: list[Facet] = field(default_factory=list)
+    #: For each facet whether it belongs to an open surface.
+    is_open: list[bool] = field(default_factory=list)
+    #: The faces of a convex body; no claim depends on them.
+    faces: list[list[int]] = field(default_factory=list)
+    #: Upper bound of the distance of the input of a convex body beyond its vertices.
+    hull_error: Fraction = Fraction()
+    radius: Fraction = Fraction()
+
+    @classmethod
+    def read(cls, shape: Any) -> Shape:
+        kind, content = one_of(shape, "convex", "pieces", "rounded")
+        if kind == "convex":
+            names = "vertices faces input_indices hull_error"
+            content = fields(content, names, "input_excess radius")
+            points = [place(v) for v in listed(content["vertices"])]
+            faces, hull_error = convex_data(points, content)
+            found = cls(points, faces=faces, hull_error=hull_error)
+        else:
+            if kind == "rounded":
+                content = fields(content, "pieces radius")
+            found = cls([])
+            for piece in listed(content["pieces"] if kind == "rounded" else content):
+                found.add_piece(piece)
+        if not found.points or (kind != "convex" and not found.facets):
+            raise NoProofError("a body has no points or no facets")
+        stored = 0.0 if kind == "pieces" else content["radius"]
+        # Only that of a convex body may be missing.
+        radius = number(0.0 if stored is None and kind == "convex" else stored)
+        if radius != 0 and not _RANGE[0] <= radius <= _RANGE[1]:
+            raise RefusedError(f"a radius of {float(radius)!r} is not from 2^-200 to 2^200")
+        return replace(found, radius=radius)
+
+    def add_piece(self, piece: Any) -> None:
+        """Adds the surface of a piece of a solid."""
+        fields(piece, "vertices triangles", "open")
+        is_open = truth(piece.get("open", False))
+        base, begin = len(self.points), len(self.facets)
+        self.points.extend(place(v) for v in listed(piece["vertices"]))
+        for triangle in listed(piece["triangles"]):
+            a, b, c = (base + whole(k, len(self.points) - base) for k in listed(triangle, 3))
+            self.facets.append((a, b, c))
+            self.is_open.append(is_open)
+        used = {k for facet in self.facets[begin:] for k in facet}
+        if used != set(range(base, len(self.points))):
+            raise RefusedError("a piece has a vertex that no facet uses")
+        if not is_open:
+            check_closed(self.points, self.facets[begin:])
+
+    @property
+    def is_convex(self) -> bool:
+        """Checks whether the body is the hull of its points; other bodies have facets."""
+        return not self.facets
+
+    def closed(self) -> list[Facet]:
+        """Returns the facets of closed surfaces, which have an interior."""
+        sides = zip(self.facets, self.is_open, strict=True)
+        return [facet for facet, is_open in sides if not is_open]
+
+    def has_open_area(self) -> bool:
+        """Checks whether an open surface has a facet with three corners.
+
+        Parts of such a surface may be closed, which is not checked. Points and segments, the cores
+        of spheres and capsules, have no interior.
+        """
+        sides = zip(self.facets, self.is_open, strict=True)
+        return any(is_open and len(set(facet)) == 3 for facet, is_open in sides)
+
+    def as_solid(self) -> Shape:
+        """Returns a point or a segment, the core of a sphere or a capsule, with its only facet.
+
+        Other bodies are returned unchanged, because the facets of a convex body have no numbers.
+        """
+        last = len(self.points) - 1
+        if self.facets or last > 1:
+            return self
+        return replace(self, facets=[(0, last, last)], is_open=[True])
 
 
 #: Limits of :func:`are_own_faces` in largest coordinates: maximum distance of vertices from the
 #: plane of their face, and minimum distance beyond their neighbours. Within them the library
 #: certainly accepts the faces of a body.
 _OWN_PLANE, _OWN_CORNER = 96 * 2.0**-53, 1024 * 2.0**-53
-
 #: Limit of the negative volume of a flat body by rounding, in cubes of the largest coordinate.
 _OWN_VOLUME = 48 * 2.0**-53
 
 
-def is_thin(points: list[Vector], faces: list[list[int]]) -> bool:
-    """Checks whether a body is so thin that rounding can hide which faces it has."""
-    room = 512 * _U * Fraction(math.sqrt(max(float(dot(v, v)) for v in points)))
-    for normal in (area(points, face) for face in faces):
-        heights = [dot(normal, v) for v in points]
-        if (max(heights) - min(heights)) ** 2 <= room * room * dot(normal, normal):
-            return True
-    return False
+def _unit_way(p: Sequence[float], q: Sequence[float]) -> list[float]:
+    """Returns the unit vector from one point to another, rounded."""
+    way = [b - a for a, b in zip(p, q, strict=True)]
+    length = math.hypot(*way) or math.inf
+    return [x / length for x in way]
 
 
-def are_own_faces(points: list[Vector], content: Any) -> bool:
+def _rounded_area(corners: list[tuple[float, float, float]]) -> tuple[float, float, float]:
+    """Returns twice the area vector of a polygon, rounded."""
+    (x, y, z), total = corners[0], [0.0, 0.0, 0.0]
+    for (a, b, c), (p, q, r) in pairwise(corners[1:]):
+        a, b, c, p, q, r = a - x, b - y, c - z, p - x, q - y, r - z
+        for k, part in enumerate((b * r - c * q, c * p - a * r, a * q - b * p)):
+            total[k] += part
+    return total[0], total[1], total[2]
+
+
+def _along(normal: Sequence[float], p: Sequence[float], q: Sequence[float]) -> float:
+    """Returns the height of ``q`` above ``p`` along a normal, rounded."""
+    return sum(n * (b - a) for n, a, b in zip(normal, p, q, strict=True))
+
+
+def _rounded_volume(at: list[tuple[float, float, float]], faces: list[list[int]]) -> float:
+    """Returns the volume inside a closed surface, rounded."""
+    x, y, z = (sum(axis) / len(at) for axis in zip(*at, strict=True))
+    corners = ([at[k] for k in face] for face in faces)
+    return sum(_along(_rounded_area(face), (x, y, z), face[0]) for face in corners) / 6
+
+
+def are_own_faces(points: list[Vector], faces: list[list[int]]) -> bool:
     """Checks whether the faces of a body are clearly those of the hull of its vertices.
 
     Rounded numbers are used because no claim depends on the result: the library rejects other
     bodies.
     """
-    faces: list[list[int]] = content["faces"]
     at = [(float(x), float(y), float(z)) for x, y, z in points]
     most = max(abs(x) for v in at for x in v)
     if len(faces) < 2:
@@ -511,162 +804,88 @@ def are_own_faces(points: list[Vector], content: Any) -> bool:
     )
 
 
-def _unit_way(p: Sequence[float], q: Sequence[float]) -> list[float]:
-    """Returns the unit vector from one point to another, rounded."""
-    way = [b - a for a, b in zip(p, q, strict=True)]
-    length = math.hypot(*way) or math.inf
-    return [x / length for x in way]
+@dataclass(frozen=True)
+class Body:
+    """A shape at the pose ``R x + t``."""
 
+    shape: Shape
+    rows: Matrix
+    offset: Vector
 
-def _rounded_area(corners: list[tuple[float, float, float]]) -> tuple[float, float, float]:
-    """Returns twice the area vector of a polygon, rounded."""
-    (x, y, z), total = corners[0], [0.0, 0.0, 0.0]
-    for (a, b, c), (p, q, r) in pairwise(corners[1:]):
-        a, b, c, p, q, r = a - x, b - y, c - z, p - x, q - y, r - z
-        for k, part in enumerate((b * r - c * q, c * p - a * r, a * q - b * p)):
-            total[k] += part
-    return total[0], total[1], total[2]
+    @classmethod
+    def placed(cls, shape: Shape, pose: Any) -> Body:
+        pose = fields(pose, "matrix translation")
+        entries = [number(x) for x in listed(pose["matrix"], 9)]
+        columns = [x if abs(x) >= _RANGE[0] else Fraction() for x in entries]
+        x, y, z = (tuple(columns[k::3]) for k in range(3))
+        rows: Matrix = ((x[0], x[1], x[2]), (y[0], y[1], y[2]), (z[0], z[1], z[2]))
+        for i, j in product(range(3), repeat=2):
+            entry = sum((row[i] * row[j] for row in rows), Fraction())
+            if abs(entry - (i == j)) > _TURN:
+                raise NoProofError("a pose is not a rotation")
+        if dot(rows[0], cross(rows[1], rows[2])) < 0:
+            raise NoProofError("a pose is a reflection")
+        return cls(shape, rows, place(pose["translation"]))
 
+    @property
+    def points(self) -> list[Vector]:
+        return self.shape.points
 
-def _along(normal: Sequence[float], p: Sequence[float], q: Sequence[float]) -> float:
-    """Returns the height of ``q`` above ``p`` along a normal, rounded."""
-    return sum(n * (b - a) for n, a, b in zip(normal, p, q, strict=True))
+    @property
+    def facets(self) -> list[Facet]:
+        return self.shape.facets
 
+    @property
+    def radius(self) -> Fraction:
+        return self.shape.radius
 
-def _rounded_volume(at: list[tuple[float, float, float]], faces: list[list[int]]) -> float:
-    """Returns the volume inside a closed surface, rounded."""
-    x, y, z = (sum(axis) / len(at) for axis in zip(*at, strict=True))
-    corners = ([at[k] for k in face] for face in faces)
-    return sum(_along(_rounded_area(face), (x, y, z), face[0]) for face in corners) / 6
+    def with_points(self, points: list[Vector]) -> Body:
+        """Returns other points at the same pose."""
+        return replace(self, shape=Shape(points))
 
+    def at(self, k: int) -> Vector:
+        """Returns a point in the world."""
+        v = self.points[k]
+        x, y, z = (dot(row, v) for row in self.rows)
+        return plus((x, y, z), self.offset)
 
-def area(points: list[Vector], face: list[int]) -> Vector:
-    """Returns twice the area vector of a polygon."""
-    total = (Fraction(), Fraction(), Fraction())
-    for a, b in pairwise(face[1:]):
-        side, other = minus(points[a], points[face[0]]), minus(points[b], points[face[0]])
-        total = plus(total, cross(side, other))
-    return total
+    def as_solid(self) -> Body:
+        return replace(self, shape=self.shape.as_solid())
 
+    def facet(self, k: int) -> Triangle:
+        a, b, c = self.facets[k]
+        return self.at(a), self.at(b), self.at(c)
 
-def entry(points: Sequence[Vector], d: Vector) -> tuple[Fraction, Fraction] | None:
-    """Returns the least and the largest ``t`` for which ``t d`` is in the convex hull of points.
+    def turn(self, v: Vector) -> Vector:
+        """Rotates a vector of the body frame to the world."""
+        x, y, z = (dot(row, v) for row in self.rows)
+        return x, y, z
 
-    Both occur at points, on segments or in triangles of the points; None if there is no such ``t``.
-    """
-    square = dot(d, d)
-    axis: Vector = min(
-        ((Fraction(1), Fraction(0), Fraction(0)), (Fraction(0), Fraction(1), Fraction(0)),
-         (Fraction(0), Fraction(0), Fraction(1))),
-        key=lambda e: abs(dot(e, d)),
-    )  # fmt: skip
-    e1 = cross(d, axis)
-    e2 = cross(d, e1)
-    shadows = [(dot(e1, m), dot(e2, m)) for m in points]
-    times = [dot(d, m) / square for m in points]
-    found = [t for s, t in zip(shadows, times, strict=True) if not any(s)]
-
-    def turn(i: int, j: int) -> Fraction:
-        (a, b), (x, y) = shadows[i], shadows[j]
-        return a * y - b * x
-
-    for i, j in combinations(range(len(points)), 2):
-        a, b = shadows[i], shadows[j]
-        if turn(i, j) == 0 and a[0] * b[0] + a[1] * b[1] < 0:
-            # The origin is between the two shadows; use the coordinate in which they differ.
-            k = 0 if a[0] != b[0] else 1
-            share = a[k] / (a[k] - b[k])
-            found.append(times[i] + share * (times[j] - times[i]))
-    for i, j, k in combinations(range(len(points)), 3):
-        u, v, w = turn(j, k), turn(k, i), turn(i, j)
-        if (u > 0 and v > 0 and w > 0) or (u < 0 and v < 0 and w < 0):
-            found.append((u * times[i] + v * times[j] + w * times[k]) / (u + v + w))
-    return (min(found), max(found)) if found else None
-
-
-def unit(normal: Vector, what: str = "the normal") -> None:
-    if not (1 - _UNIT_VECTOR) ** 2 <= dot(normal, normal) <= (1 + _UNIT_VECTOR) ** 2:
-        raise RefusedError(f"{what} is not a unit vector")
-
-
-def contact(
-    moving: Body,
-    fixed: Body,
-    d: Vector,
-    proof: Any,
-    report: Report,
-    which: str,
-    min_gap: Fraction = _NO_GAP,
-) -> None:
-    """Checks both bounds of a certificate between convex bodies.
-
-    Rounded bodies are as near as ``min_gap`` where the hulls of their points are as near as the sum
-    of ``min_gap`` and both radii.
-    """
-    proof = fields(proof, "normal lower pairs weights upper rounding")
-    normal = vector(proof["normal"])
-    unit(normal)
-    along = dot(normal, d)
-    if along <= 0:
-        raise RefusedError(f"{which}: the normal does not point along the direction")
-    lower = number(proof["lower"])
-    gap = min(fixed.heights(normal)) - max(moving.heights(normal))
-    said, min_gap = min_gap, min_gap + radii(moving, fixed)
-    if not above(gap - lower * along, min_gap * min_gap * dot(normal, normal)):
-        proven = float((gap - min_gap) / along)
-        raise RefusedError(f"{which}: the plane proves {proven!r}, not {float(lower)!r}")
-    meet = f"are nearer than {float(said)!r}" if said else "meet"
-    report.holds.append(f"{which}: the bodies {meet} at no translation below {float(lower)!r}")
-
-    noise = _NOISE * (size(moving, fixed) + min_gap)
-    stated(d, proof, noise, min_gap)
-    weights = listed(proof["weights"], 3)
-    ends = ends_of(moving, fixed, listed(proof["pairs"], 3))
-    corners = [minus(q, p) for p, q in ends]
-    point = mean(corners, weights)
-    estimate = dot(point, d) / dot(d, d)
-    off = minus(point, scaled(d, estimate))
-    miss = dot(off, off)
-    if proof["upper"] is None:
-        if not min_gap and miss > (_MISS_WIDENED * noise) ** 2:
-            raise RefusedError(f"{which}: the witness points miss each other")
-        report.unchecked.append(f"{which}: no upper bound is claimed")
-        return
-    upper = number(proof["upper"])
-    if upper < lower:
-        raise RefusedError(f"{which}: the bounds are in the wrong order")
-    between = minus(point, scaled(d, upper))
-    if min_gap and above(min_gap, dot(between, between)):
-        meet = "are as near" if said else "do meet"
-        report.holds.append(f"{which}: the bodies {meet} at one of at most {float(upper)!r}")
-        return
-    if min_gap > _SLIGHT * noise:
-        raise RefusedError(f"{which}: the witness points are not as near as {float(min_gap)!r}")
-    # For a slight gap the proof may only show that the bodies meet.
-    if miss > (_MISS * noise) ** 2:
-        raise RefusedError(f"{which}: the witness points miss each other")
-    if upper < estimate + _RAISE * noise / along:
-        raise RefusedError(f"{which}: the pairs do not prove an upper bound of {float(upper)!r}")
-    met = entry(corners, d)
-    if met is not None and met[0] <= upper:
-        report.holds.append(f"{which}: the bodies do meet at one of at most {float(upper)!r}")
-    else:
-        report.holds.append(
-            f"{which}: the bodies meet at one of at most {float(upper)!r}, as far as rounding can "
-            f"tell (the witness points come within {math.sqrt(float(miss)):.1e})"
+    def skew(self) -> Fraction:
+        """Returns a bound of the deviation of the axis products from those of a rotation."""
+        products = (
+            abs(dot(self.rows[i], self.rows[j]) - (i == j)) for i, j in product(range(3), repeat=2)
         )
+        return max(products) + _TINY
+
+    def heights(self, normal: Vector) -> Iterator[Fraction]:
+        """Yields the heights of all points along a normal of the world."""
+        columns = [
+            sum((normal[r] * self.rows[r][c] for r in range(3)), Fraction()) for c in range(3)
+        ]
+        local = (columns[0], columns[1], columns[2])
+        base = dot(normal, self.offset)
+        for v in self.points:
+            yield dot(local, v) + base
+
+    def reach(self) -> float:
+        """Returns the largest distance of a point from the origin of the frame, rounded."""
+        return math.sqrt(max(float(dot(v, v)) for v in self.points))
 
 
-def stated(d: Vector, proof: Any, noise: Fraction, min_gap: Fraction) -> None:
-    """Checks that the stated rounding of a certificate is within limits; it proves nothing."""
-    normal, rounding = vector(proof["normal"]), number(proof["rounding"])
-    sideways = cross(normal, d)
-    share = root_above(dot(sideways, sideways) / dot(d, d))
-    most, across = _MOST_STATED
-    slight = 2 * min_gap if min_gap <= _SLIGHT * noise else Fraction()
-    limit = (most + across * share) * noise + slight
-    if not 0 <= rounding * dot(normal, d) <= limit:
-        raise RefusedError(f"rounding does not explain {float(rounding)!r}")
+def radii(moving: Body, fixed: Body) -> Fraction:
+    """Returns the sum of the radii of both bodies."""
+    return moving.radius + fixed.radius
 
 
 def size(moving: Body, fixed: Body) -> Fraction:
@@ -676,9 +895,20 @@ def size(moving: Body, fixed: Body) -> Fraction:
     return max(Fraction(reach), _RANGE[0])
 
 
-def radii(moving: Body, fixed: Body) -> Fraction:
-    """Returns the sum of the radii of both bodies."""
-    return moving.radius + fixed.radius
+def vertex_pairs(pairs: Any, moving: int, fixed: int) -> list[tuple[int, int]]:
+    """Returns the indices of pairs of vertices, below the numbers of vertices of both bodies."""
+    named = [fields(pair, "moving fixed") for pair in listed(pairs)]
+    return [(whole(pair["moving"], moving), whole(pair["fixed"], fixed)) for pair in named]
+
+
+def ends_of(moving: Body, fixed: Body, pairs: Any) -> list[tuple[Vector, Vector]]:
+    """Returns the points of pairs of vertices."""
+    named = vertex_pairs(pairs, len(moving.points), len(fixed.points))
+    return [(moving.at(i), fixed.at(j)) for i, j in named]
+
+
+# Two convex bodies along a direction
+# -----------------------------------
 
 
 def across(d: Vector, normal: Vector) -> Vector:
@@ -713,6 +943,86 @@ def never_near(min_gap: Fraction) -> str:
     return f"are never as near as {float(min_gap)!r}" if min_gap else "never meet"
 
 
+def stated(d: Vector, proof: Any, noise: Fraction, min_gap: Fraction) -> None:
+    """Checks that the stated rounding of a certificate is within limits; it proves nothing."""
+    normal, rounding = vector(proof["normal"]), number(proof["rounding"])
+    sideways = cross(normal, d)
+    share = root_above(dot(sideways, sideways) / dot(d, d))
+    most, across = _MOST_STATED
+    slight = 2 * min_gap if min_gap <= _SLIGHT * noise else Fraction()
+    limit = (most + across * share) * noise + slight
+    if not 0 <= rounding * dot(normal, d) <= limit:
+        raise RefusedError(f"rounding does not explain {float(rounding)!r}")
+
+
+def contact(
+    moving: Body,
+    fixed: Body,
+    d: Vector,
+    proof: Any,
+    report: Report,
+    which: str,
+    min_gap: Fraction = _NO_GAP,
+) -> None:
+    """Checks both bounds of a certificate between convex bodies.
+
+    Rounded bodies are as near as ``min_gap`` where the hulls of their points are as near as the sum
+    of ``min_gap`` and both radii.
+    """
+    proof = fields(proof, "normal lower pairs weights upper rounding")
+    normal = vector(proof["normal"])
+    unit(normal)
+    along = dot(normal, d)
+    if along <= 0:
+        raise RefusedError(f"{which}: the normal does not point along the direction")
+    lower = number(proof["lower"])
+    gap = min(fixed.heights(normal)) - max(moving.heights(normal))
+    body_gap, min_gap = min_gap, min_gap + radii(moving, fixed)
+    if not above(gap - lower * along, min_gap * min_gap * dot(normal, normal)):
+        proven = float((gap - min_gap) / along)
+        raise RefusedError(f"{which}: the plane proves {proven!r}, not {float(lower)!r}")
+    meet = f"are nearer than {float(body_gap)!r}" if body_gap else "meet"
+    report.holds.append(f"{which}: the bodies {meet} at no translation below {float(lower)!r}")
+
+    noise = _NOISE * (size(moving, fixed) + min_gap)
+    stated(d, proof, noise, min_gap)
+    weights = listed(proof["weights"], 3)
+    ends = ends_of(moving, fixed, listed(proof["pairs"], 3))
+    corners = [minus(q, p) for p, q in ends]
+    point = mean(corners, weights)
+    estimate = dot(point, d) / dot(d, d)
+    off = minus(point, scaled(d, estimate))
+    miss = dot(off, off)
+    if proof["upper"] is None:
+        if not min_gap and miss > (_MISS_WIDENED * noise) ** 2:
+            raise RefusedError(f"{which}: the witness points miss each other")
+        report.unchecked.append(f"{which}: no upper bound is claimed")
+        return
+    upper = number(proof["upper"])
+    if upper < lower:
+        raise RefusedError(f"{which}: the bounds are in the wrong order")
+    between = minus(point, scaled(d, upper))
+    if min_gap and above(min_gap, dot(between, between)):
+        meet = "are as near" if body_gap else "do meet"
+        report.holds.append(f"{which}: the bodies {meet} at one of at most {float(upper)!r}")
+        return
+    if min_gap > _SLIGHT * noise:
+        raise RefusedError(f"{which}: the witness points are not as near as {float(min_gap)!r}")
+    # For a slight gap the proof may only show that the bodies meet.
+    if miss > (_MISS * noise) ** 2:
+        raise RefusedError(f"{which}: the witness points miss each other")
+    if upper < estimate + _RAISE * noise / along:
+        raise RefusedError(f"{which}: the pairs do not prove an upper bound of {float(upper)!r}")
+    met = line_range(corners, d)
+    if met is not None and met[0] <= upper:
+        report.holds.append(f"{which}: the bodies do meet at one of at most {float(upper)!r}")
+    else:
+        report.holds.append(
+            f"{which}: the bodies meet at one of at most {float(upper)!r}, as far as rounding can "
+            f"tell (the witness points come within {math.sqrt(float(miss)):.1e})"
+        )
+
+
 def slide(
     moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, min_gap: Fraction = _NO_GAP
 ) -> None:
@@ -744,6 +1054,35 @@ def separation(
     )
 
 
+def contacts(
+    moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, min_gap: Fraction
+) -> None:
+    """Checks both ends of the range of translations at which two convex bodies meet."""
+    claim = fields(claim, "", "slide first last")
+    claim = {name: part for name, part in claim.items() if part is not None}
+    if not {"first", "last"} & set(claim):
+        raise NoProofError("no contact is claimed")
+    if "slide" in claim:
+        slide(moving, fixed, d, claim["slide"], report, min_gap)
+    if "first" in claim:
+        contact(moving, fixed, d, claim["first"], report, "along the direction", min_gap)
+    if "last" in claim:
+        back = negative(d)
+        contact(moving, fixed, back, claim["last"], report, "against the direction", min_gap)
+    report.unchecked.append("the stated rounding, which proves nothing")
+
+
+# Two solids along a direction
+# ----------------------------
+
+
+def refuses(start_overlap: Any) -> bool:
+    """Checks whether an overlap at the start stops the bodies, instead of being ignored."""
+    if start_overlap not in ("refuse", "ignore"):
+        raise NoProofError(f"start_overlap is {start_overlap!r}, not refuse or ignore")
+    return bool(start_overlap == "refuse")
+
+
 def check_letters(cover: Any, letters: str = "mfapnxdos") -> None:
     """Checks the form of a cover of pairs of facets."""
     if not isinstance(cover, str) or set(cover) - set(letters):
@@ -766,14 +1105,74 @@ def overlap_of(value: Any, counts: tuple[int, int], *others: str) -> str:
     return kind
 
 
+def translation_of(stop: Any) -> tuple[Fraction | None, Fraction | None]:
+    """Returns the bounds of the translation at which two facets meet; None stands for no bound."""
+    ends = fields(stop["translation"], "value lower upper")
+    value = number(ends["value"])
+    lower, upper = (None if ends[k] is None else number(ends[k]) for k in ("lower", "upper"))
+    if (lower is not None and lower > value) or (upper is not None and upper < value):
+        raise RefusedError("the translation is not between its bounds")
+    return lower, upper
+
+
+def stopping_facets(
+    moving: Body,
+    fixed: Body,
+    d: Vector,
+    stop: Any,
+    tolerance: Fraction,
+    core_gap: Fraction,
+    report: Report,
+) -> None:
+    """Checks the translation at which the two nominal stopping facets meet.
+
+    With a gap they meet where they are as near as the gap. Their distance is a convex function of
+    the translation, so they do not meet before the lower bound if they are at least the gap apart
+    there and at most the gap at the upper bound.
+    """
+    named = listed(stop["facets"], 2)
+    f, g = (whole(k, len(body.facets)) for k, body in zip(named, (moving, fixed), strict=True))
+    lower, upper = translation_of(stop)
+    names = f"facet {f} of the moving body and {g} of the fixed one"
+    if core_gap:
+        ends = [] if lower is None or upper is None else [lower, upper]
+        swept = [[plus(v, scaled(d, t)) for v in moving.facet(f)] for t in ends]
+        other, square = fixed.facet(g), core_gap * core_gap
+        is_slight = core_gap <= _SLIGHT * _NOISE * (size(moving, fixed) + core_gap)
+        is_before = bool(ends) and are_apart(swept[0], other, square)
+        if is_before and not are_apart(swept[1], other, square, strictly=True):
+            near = f"come as near as {float(core_gap)!r}"
+            report.holds.append(f"{names} {near} within the bounds claimed")
+            return
+        if ends and not tolerance and not is_slight:
+            raise RefusedError(f"{names} are not {float(core_gap)!r} apart within the bounds")
+        report.unchecked.append(f"where {names} are {float(core_gap)!r} apart")
+        return
+    corners = [minus(q, p) for p in moving.facet(f) for q in fixed.facet(g)]
+    met = line_range(corners, d)
+    if met is None:
+        if tolerance == 0:
+            raise RefusedError(f"{names} never meet")
+        report.unchecked.append(f"{names} pass each other as they are")
+        return
+    at = float(met[0])
+    if lower is not None and met[0] < lower:
+        raise RefusedError(f"{names} meet at {at!r}, before {float(lower)!r}")
+    if upper is not None and met[0] > upper:
+        if tolerance == 0:
+            raise RefusedError(f"{names} meet at {at!r}, after {float(upper)!r}")
+        report.unchecked.append(f"the upper bound {float(upper)!r} is one of the shrunk bodies")
+        return
+    report.holds.append(f"{names} first meet at {at!r}, within the bounds claimed")
+
+
 def clearance(
     moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, min_gap: Fraction = _NO_GAP
 ) -> None:
     """Checks the claims of a clearance of solids that do not depend on their trees."""
     claim = fields(claim, "start_overlap certificate", "stop separation")
     certificate = fields(claim["certificate"], "tolerance start lower cover", "stop")
-    if claim["start_overlap"] not in ("refuse", "ignore"):
-        raise NoProofError(f"start_overlap is {claim['start_overlap']!r}, not refuse or ignore")
+    refuses(claim["start_overlap"])
     counts = (len(moving.facets), len(fixed.facets))
     if certificate["start"] != "assumed":
         overlap_of(certificate["start"], counts, "apart")
@@ -806,14 +1205,8 @@ def clearance(
     if (stop is None) != (certificate["stop"] is None):
         raise RefusedError("the certificate and the claim do not agree about what stops the body")
     stop = None if stop is None else fields(stop, "facets translation")
-    if stop is not None and min_gap + swept:
-        named = listed(stop["facets"], 2)
-        at = [whole(k, len(of.facets)) for k, of in zip(named, (moving, fixed), strict=True)]
-        translation_of(stop)
-        core_gap = float(min_gap + swept)
-        report.unchecked.append(f"where facets {at[0]} and {at[1]} are {core_gap!r} apart")
-    elif stop is not None:
-        facets(moving, fixed, d, stop, tolerance, report)
+    if stop is not None:
+        stopping_facets(moving, fixed, d, stop, tolerance, min_gap + swept, report)
     if tolerance:
         report.unchecked.append(
             f"what shrinking by {float(tolerance / 2)!r} makes of the bodies, which may be thinner"
@@ -827,77 +1220,29 @@ def clearance(
     )
 
 
-def translation_of(stop: Any) -> tuple[Fraction | None, Fraction | None]:
-    """Returns the bounds of the translation at which two facets meet; None stands for no bound."""
-    ends = fields(stop["translation"], "value lower upper")
-    value = number(ends["value"])
-    lower, upper = (None if ends[k] is None else number(ends[k]) for k in ("lower", "upper"))
-    if (lower is not None and lower > value) or (upper is not None and upper < value):
-        raise RefusedError("the translation is not between its bounds")
-    return lower, upper
+# Distances and depths
+# --------------------
+
+#: The fields of a claim that two points are near each other.
+_NEAR = "pairs weights distance"
 
 
-def facets(
-    moving: Body, fixed: Body, d: Vector, stop: Any, tolerance: Fraction, report: Report
-) -> None:
-    """Checks the translation at which the two nominal stopping facets meet."""
-    named = listed(stop["facets"], 2)
-    f, g = (whole(k, len(body.facets)) for k, body in zip(named, (moving, fixed), strict=True))
-    lower, upper = translation_of(stop)
-    told = f"facet {f} of the moving body and {g} of the fixed one"
-    corners = [minus(q, p) for p in moving.facet(f) for q in fixed.facet(g)]
-    met = entry(corners, d)
-    if met is None:
-        if tolerance == 0:
-            raise RefusedError(f"{told} never meet")
-        report.unchecked.append(f"{told} pass each other as they are")
-        return
-    at = float(met[0])
-    if lower is not None and met[0] < lower:
-        raise RefusedError(f"{told} meet at {at!r}, before {float(lower)!r}")
-    if upper is not None and met[0] > upper:
-        if tolerance == 0:
-            raise RefusedError(f"{told} meet at {at!r}, after {float(upper)!r}")
-        report.unchecked.append(f"the upper bound {float(upper)!r} is one of the shrunk bodies")
-        return
-    report.holds.append(f"{told} first meet at {at!r}, within the bounds claimed")
+def are_points_near(
+    ends: Sequence[tuple[Vector, Vector]], shares: Sequence[Any], length: Fraction
+) -> bool:
+    """Checks whether the weighted means of pairs of points are at most a length apart."""
+    p, q = (mean([end[k] for end in ends], shares) for k in (0, 1))
+    return is_within(p, q, length)
 
 
-def above(length: Fraction, square: Fraction) -> bool:
-    """Checks whether a length is at least the root of a square."""
-    return length >= 0 and length * length >= square
+def are_cores_near(near: Any, ends: Sequence[tuple[Vector, Vector]], length: Fraction) -> bool:
+    """Checks whether the pairs of a claim prove that hulls are at most a length apart.
 
-
-def mean(points: Sequence[Vector], weights: Sequence[Any]) -> Vector:
-    """Returns the weighted mean of points."""
-    shares = [w if isinstance(w, Fraction) else number(w) for w in listed(weights)]
-    total = sum(shares, Fraction())
-    if len(shares) != len(points) or min(shares) < 0 or abs(total - 1) > _UNIT_VECTOR:
-        raise RefusedError("the weights are not those of a mean")
-    found = (Fraction(), Fraction(), Fraction())
-    for point, share in zip(points, shares, strict=True):
-        found = plus(found, scaled(point, share / total))
-    return found
-
-
-def ends_of(moving: Body, fixed: Body, pairs: Any) -> list[tuple[Vector, Vector]]:
-    """Returns the points of pairs of vertices."""
-    named = [fields(pair, "moving fixed") for pair in listed(pairs)]
-    return [
-        (
-            moving.at(whole(pair["moving"], len(moving.points))),
-            fixed.at(whole(pair["fixed"], len(fixed.points))),
-        )
-        for pair in named
-    ]
-
-
-def encloses(corners: Sequence[Vector]) -> bool:
-    """Checks whether a tetrahedron with a volume contains the origin."""
-    a, b, c, d = corners
-    faces = ((b, c, d), (a, d, c), (a, b, d), (a, c, b))
-    signs = [dot(u, cross(v, w)) for u, v, w in faces]
-    return any(signs) and (min(signs) >= 0 or max(signs) <= 0)
+    Either the weighted means are, or the differences enclose the origin if the claim is 0.
+    """
+    shares = [number(weight) for weight in listed(near["weights"], 4)]
+    enclosed = number(near["distance"]) == 0 and encloses([minus(q, p) for p, q in ends])
+    return (enclosed and length >= 0) or are_points_near(ends, shares, length)
 
 
 def distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
@@ -919,89 +1264,30 @@ def distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
         return
     near = fields(near, _NEAR)
     upper, ends = number(near["distance"]), ends_of(moving, fixed, listed(near["pairs"], 4))
-    shares = [number(weight) for weight in listed(near["weights"], 4)]
-    if upper == 0:
-        enclosed = encloses([minus(q, p) for p, q in ends])
-        if not enclosed and not (swept and are_points_near(ends, shares, swept)):
-            raise RefusedError("the pairs do not enclose the origin")
-        report.holds.append("the bodies have a point in common")
-        return
-    p, q = (mean([end[k] for end in ends], shares) for k in (0, 1))
-    apart(p, q, upper, report, swept)
+    is_proven = are_cores_near(near, ends, upper + swept)
+    if upper == 0 and not swept:
+        is_proven = encloses([minus(q, p) for p, q in ends])
+    if upper < 0 or not is_proven:
+        raise RefusedError(f"the pairs do not prove a distance of at most {float(upper)!r}")
+    apart = f"are at most {float(upper)!r} apart" if upper else "have a point in common"
+    report.holds.append(f"the bodies {apart}")
 
 
-def are_points_near(
-    ends: Sequence[tuple[Vector, Vector]], shares: Sequence[Any], length: Fraction
-) -> bool:
-    """Checks whether the weighted means of pairs of points are at most a length apart."""
-    p, q = (mean([end[k] for end in ends], shares) for k in (0, 1))
-    between = minus(q, p)
-    return above(length, dot(between, between))
-
-
-#: The fields of a claim that two points are near each other.
-_NEAR = "pairs weights distance"
-
-
-def are_cores_near(near: Any, ends: Sequence[tuple[Vector, Vector]], length: Fraction) -> bool:
-    """Checks whether the pairs of a claim prove that hulls are at most a length apart.
-
-    Either the weighted means are, or the differences enclose the origin if the claim is 0.
-    """
-    shares = [number(weight) for weight in listed(near["weights"], 4)]
-    enclosed = number(near["distance"]) == 0 and encloses([minus(q, p) for p, q in ends])
-    return (enclosed and length >= 0) or are_points_near(ends, shares, length)
-
-
-def apart(p: Vector, q: Vector, upper: Fraction, report: Report, swept: Fraction = _NO_GAP) -> None:
-    """Checks the distance of a point of each body as an upper bound, less both radii."""
-    between = minus(q, p)
-    if upper < 0 or not above(upper + swept, dot(between, between)):
-        found = math.sqrt(float(dot(between, between))) - float(swept)
-        raise RefusedError(f"the points are {found!r} apart, not {float(upper)!r}")
-    report.holds.append(f"the bodies are at most {float(upper)!r} apart")
-
-
-def check_solid_near(near: Any) -> None:
-    """Checks the form of a claim about the nearest points of two solids."""
-    kind, claim = one_of(near, "points", "meeting")
-    if kind == "meeting":
-        overlap_of(claim, (2**32, 2**32))
-        return
-    fields(claim, "triangles weights distance")
-    for k in listed(claim["triangles"], 2):
-        whole(k, 2**32)
-    for weights in listed(claim["weights"], 2):
-        for weight in listed(weights, 3):
-            number(weight)
-    number(claim["distance"])
-
-
-def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
-    """Checks the claims about the distance of solids that do not depend on their trees."""
-    claim = fields(claim, "lower near cover")
-    check_letters(claim["cover"], "mfpqwxs")
-    check_solid_near(claim["near"])
-    if claim["cover"] and number(claim["lower"]) == 0:
-        report.partly = True
-        report.unchecked.append("the cover, which claims nothing")
-    if "points" in claim["near"]:
-        near = claim["near"]["points"]
-        named = listed(near["triangles"], 2)
-        corners = [
-            body.facet(whole(k, len(body.facets)))
-            for body, k in zip((moving, fixed), named, strict=True)
-        ]
-        p, q = (mean(c, w) for c, w in zip(corners, listed(near["weights"], 2), strict=True))
-        apart(p, q, number(near["distance"]), report, radii(moving, fixed))
-    else:
-        report.partly = True
-        report.unchecked.append("that the bodies have a point in common")
-    if number(claim["lower"]) < 0:
-        raise RefusedError("a distance is not negative")
-    if number(claim["lower"]) > 0:
-        report.partly = True
-        report.unchecked.append(f"that they are at least {claim['lower']!r} apart")
+def enclosure(corners: list[Vector], surface: Any, lower: Fraction) -> None:
+    """Checks a closed surface around the origin whose triangles are not nearer than a length."""
+    triangles = [tuple(whole(k, len(corners)) for k in t) for t in listed(surface["triangles"])]
+    if any(len(t) != 3 for t in triangles) or len(surface["normals"]) != len(triangles):
+        raise NoProofError("a triangle does not have three corners and a normal")
+    sides = [(t[k], t[k - 2]) for t in triangles for k in range(3)]
+    if len(set(sides)) < len(sides) or any((b, a) not in set(sides) for a, b in sides):
+        raise RefusedError("the surface is not closed")
+    for t, each in zip(triangles, listed(surface["normals"]), strict=True):
+        normal = vector(each)
+        least = min(dot(normal, corners[k]) for k in t)
+        if least <= 0 or lower * lower * dot(normal, normal) > least * least:
+            raise RefusedError(f"a triangle is nearer to the origin than {float(lower)!r}")
+    if winds(_ZERO, [(corners[a], corners[b], corners[c]) for a, b, c in triangles]) <= 0:
+        raise RefusedError("the surface does not wind around the origin")
 
 
 def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
@@ -1042,62 +1328,120 @@ def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
         report.holds.append(f"no translation below {float(lower)!r} separates them")
 
 
-def enclosure(corners: list[Vector], surface: Any, lower: Fraction) -> None:
-    """Checks a closed surface around the origin whose triangles are not nearer than a length."""
-    triangles = [tuple(whole(k, len(corners)) for k in t) for t in listed(surface["triangles"])]
-    if any(len(t) != 3 for t in triangles) or len(surface["normals"]) != len(triangles):
-        raise NoProofError("a triangle does not have three corners and a normal")
-    sides = [(t[k], t[k - 2]) for t in triangles for k in range(3)]
-    if len(set(sides)) < len(sides) or any((b, a) not in set(sides) for a, b in sides):
-        raise RefusedError("the surface is not closed")
-    for t, each in zip(triangles, listed(surface["normals"]), strict=True):
-        normal = vector(each)
-        least = min(dot(normal, corners[k]) for k in t)
-        if least <= 0 or lower * lower * dot(normal, normal) > least * least:
-            raise RefusedError(f"a triangle is nearer to the origin than {float(lower)!r}")
-    if turns(corners, triangles) <= 0:
-        raise RefusedError("the surface does not wind around the origin")
+# Distances of solids
+# -------------------
 
 
-def turns(corners: list[Vector], triangles: list[tuple[int, ...]]) -> int:
-    """Returns the winding number of a closed surface around the origin."""
-    for k in range(1, 100):
-        # Try rays until one meets no edge.
-        ray = (Fraction(1, k), Fraction(k, 7), Fraction(3, k + 1))
-        total, clean = 0, True
-        for a, b, c in ((corners[i], corners[j], corners[k]) for i, j, k in triangles):
-            signs = [dot(ray, cross(u, v)) for u, v in ((a, b), (b, c), (c, a))]
-            volume = dot(a, cross(b, c))
-            if min(signs) > 0 and volume > 0:
-                total += 1
-            elif max(signs) < 0 and volume < 0:
-                total -= 1
-            elif min(signs) >= 0 or max(signs) <= 0:
-                clean = clean and 0 not in signs
-        if clean:
-            return total
-    raise RefusedError("no ray avoids all edges of the surface")
+def check_solid_near(near: Any) -> None:
+    """Checks the form of a claim about the nearest points of two solids."""
+    kind, claim = one_of(near, "points", "meeting")
+    if kind == "meeting":
+        overlap_of(claim, (2**32, 2**32))
+        return
+    fields(claim, "triangles weights distance")
+    for k in listed(claim["triangles"], 2):
+        whole(k, 2**32)
+    for weights in listed(claim["weights"], 2):
+        for weight in listed(weights, 3):
+            number(weight)
+    number(claim["distance"])
 
 
-Bounds: TypeAlias = tuple[list[Fraction], list[Fraction]]
+def solid_near(moving: Body, fixed: Body, near: Any, report: Report) -> None:
+    """Checks two points of solids, by the weights of the corners of two facets."""
+    check_solid_near(near)
+    if "points" not in near:
+        report.partly = True
+        report.unchecked.append("that the bodies have a point in common")
+        return
+    near = near["points"]
+    named = zip((moving, fixed), listed(near["triangles"], 2), strict=True)
+    corners = [body.facet(whole(k, len(body.facets))) for body, k in named]
+    p, q = (mean(c, w) for c, w in zip(corners, listed(near["weights"], 2), strict=True))
+    upper = number(near["distance"])
+    if upper < 0 or not is_within(p, q, upper + radii(moving, fixed)):
+        raise RefusedError(f"the points do not prove a distance of at most {float(upper)!r}")
+    report.holds.append(f"the bodies are at most {float(upper)!r} apart")
+
+
+def are_solids_apart(moving: Body, fixed: Body, length: Fraction) -> bool | None:
+    """Checks whether two solids without their radii are at least a length apart.
+
+    No two facets are nearer, and no shell is inside the other solid. Returns None if this takes too
+    many steps, or if open surfaces may have closed parts.
+    """
+    bodies = (moving, fixed)
+    placed = [[body.at(k) for k in range(len(body.points))] for body in bodies]
+    whole_points, unit_of = in_units(placed)
+    f, g = (
+        [(v[a], v[b], v[c]) for a, b, c in body.facets]
+        for v, body in zip(whole_points, bodies, strict=True)
+    )
+    square, visited = (length * unit_of) ** 2, 0
+    for pair in near_facets((box_tree(f), box_tree(g)), lambda p, q: box_gap(p, q) >= square):
+        visited += pair is None
+        if visited > MAX_PAIRS:
+            return None
+        if pair is not None and not are_apart(f[pair[0]], g[pair[1]], square):
+            return False
+    for own, other in ((0, 1), (1, 0)):
+        surface, around = (
+            [(placed[k][a], placed[k][b], placed[k][c]) for a, b, c in facets]
+            for k, facets in ((own, bodies[own].facets), (other, bodies[other].shape.closed()))
+        )
+        if is_nested(surface, around):
+            return False
+    return None if any(body.shape.has_open_area() for body in bodies) else True
+
+
+def solid_gap(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
+    """Checks that no two points of solids are nearer than the lower bound of a distance.
+
+    The cover of the claim is not used: a search of pairs of facets decides.
+    """
+    check_letters(claim["cover"], "mfpqwxs")
+    lower = number(claim["lower"])
+    if lower < 0:
+        raise RefusedError("a distance is not negative")
+    report.has_cover = report.has_cover or bool(claim["cover"])
+    if lower == 0:
+        return
+    if "points" not in claim["near"]:
+        raise RefusedError("bodies with a point in common are not apart")
+    found = are_solids_apart(moving, fixed, lower + radii(moving, fixed))
+    apart = f"the bodies are at least {float(lower)!r} apart"
+    if found is None:
+        report.partly = True
+        report.unchecked.append(f"that {apart}")
+    elif found:
+        report.holds.append(apart)
+    else:
+        raise RefusedError(f"the bodies are not proven to be {float(lower)!r} apart")
+
+
+def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
+    """Checks the distance of solids."""
+    solid_near(moving, fixed, fields(claim, "lower near cover")["near"], report)
+    solid_gap(moving, fixed, claim, report)
+
+
+# One body among many
+# -------------------
+
 #: The bound if nothing ever stops the body.
 _NEVER = None
 
 
-def box(body: Body) -> Bounds:
-    """Returns the least and the largest coordinates of a body, including its radius."""
-    axes = [tuple(Fraction(i == k) for k in range(3)) for i in range(3)]
-    all_heights = [list(body.heights((x, y, z))) for x, y, z in axes]
-    return [min(h) - body.radius for h in all_heights], [max(h) + body.radius for h in all_heights]
+def body_box(body: Body) -> Bounds[Fraction]:
+    """Returns the box of a placed body, including its radius."""
+    low, high = box_of([body.at(k) for k in range(len(body.points))])
+    by = (body.radius, body.radius, body.radius)
+    return minus(low, by), plus(high, by)
 
 
-def box_gap(p: Bounds, q: Bounds) -> Fraction:
-    """Returns the squared distance of two boxes."""
-    sides = zip(*p, *q, strict=True)
-    return sum((max(c - b, a - d, Fraction()) ** 2 for a, b, c, d in sides), Fraction())
-
-
-def box_entry(p: Bounds, q: Bounds, d: Vector, min_gap: Fraction) -> Fraction | None:
+def box_entry(
+    p: Bounds[Fraction], q: Bounds[Fraction], d: Vector, min_gap: Fraction
+) -> Fraction | None:
     """Returns the first translation, from 0 on, at which a box grown by a gap meets another."""
     first, last = Fraction(), None
     for a, b, c, e, x in zip(*p, *q, d, strict=True):
@@ -1117,48 +1461,44 @@ def beyond(bound: Fraction | None, lower: Fraction | None) -> bool:
     return bound is None or (lower is not None and bound >= lower)
 
 
-def refuses(start_overlap: Any) -> bool:
-    """Checks whether an overlap at the start stops the bodies, instead of being ignored."""
-    if start_overlap not in ("refuse", "ignore"):
-        raise NoProofError(f"start_overlap is {start_overlap!r}, not refuse or ignore")
-    return bool(start_overlap == "refuse")
+#: The kind of placement for each kind of query.
+PLACEMENTS = {
+    "cast": "poses",
+    "pair": "poses",
+    "scene": "poses",
+    "motions": "motions",
+    "path": "robot",
+}
 
 
 @dataclass(frozen=True)
 class File:
     """The bodies of a file, their placement, and the query."""
 
-    bodies: list[Any]
-    #: For each body its points in the body frame, and its facets.
-    shapes: list[tuple[list[Vector], list[tuple[int, int, int]]]]
-    #: For each body its radius.
-    radii: list[Fraction]
-    asked: str
+    shapes: list[Shape]
+    #: The kind of the query, and its content.
+    question: str
     query: Any
     placement: Any
 
     @classmethod
     def read(cls, content: dict[str, Any]) -> File:
-        bodies = listed(content["bodies"])
-        shapes = [Body.shape(shape) for shape in bodies]
-        radii = [Body.radius_of(shape) for shape in bodies]
-        asked, query = "pair", None
+        shapes = [Shape.read(shape) for shape in listed(content["bodies"])]
+        question, query = "pair", None
         if content["query"] != "pair":
-            asked, query = one_of(
+            question, query = one_of(
                 content["query"], *(kind for kind in PLACEMENTS if kind != "pair")
             )
-        _, placement = one_of(content["placement"], PLACEMENTS[asked])
-        return cls(bodies, shapes, radii, asked, query, placement)
+        _, placement = one_of(content["placement"], PLACEMENTS[question])
+        return cls(shapes, question, query, placement)
 
     def number(self, value: Any) -> int:
         """Returns the index of a body."""
-        return whole(value, len(self.bodies))
+        return whole(value, len(self.shapes))
 
     def placed(self, of: Any) -> Body:
         """Returns a body at its pose."""
-        which = self.number(of["body"])
-        body = Body.placed(*self.shapes[which], of["pose"])
-        return replace(body, radius=self.radii[which])
+        return Body.placed(self.shapes[self.number(of["body"])], of["pose"])
 
     def poses(self) -> list[Body]:
         """Returns the bodies at their poses, the moving one first."""
@@ -1168,19 +1508,19 @@ class File:
         """Returns the moving and the fixed body: two solids, or two convex bodies."""
         listed(self.placement, 2)
         moving, fixed = self.poses()
-        if moving.is_convex == solids or fixed.is_convex == solids:
+        if moving.shape.is_convex == solids or fixed.shape.is_convex == solids:
             raise NoProofError("this claim does not apply to bodies of this kind")
         return moving, fixed
 
 
-#: The kind of placement for each kind of query.
-PLACEMENTS = {
-    "cast": "poses",
-    "pair": "poses",
-    "scene": "poses",
-    "motions": "motions",
-    "path": "robot",
-}
+def gap_to_keep(of: Any) -> Fraction:
+    """Returns the minimum gap of a query; 0 if there is none."""
+    min_gap = number(of.get("min_gap", 0.0))
+    if not 0 <= min_gap <= _RANGE[1]:
+        raise NoProofError(
+            f"a minimum gap of {float(min_gap)!r} is out of range; accepted: 0 to 2^200"
+        )
+    return min_gap
 
 
 class Scene:
@@ -1196,7 +1536,7 @@ class Scene:
         if self.graze < 0 or (tolerance is not None and number(tolerance) < 0):
             raise NoProofError("a tolerance is negative")
         self.refuses = refuses(choices["start_overlap"])
-        self.box = box(self.moving)
+        self.box = body_box(self.moving)
         self.report = report
 
     def check(self, kind: str, claim: Any) -> None:
@@ -1216,19 +1556,22 @@ class Scene:
         ((kind, content),) = claim.items()
         if kind not in kinds:
             raise NoProofError(f"unknown kind of claim {kind!r}")
-        if (kind == "convex") != (self.moving.is_convex and self.obstacles[k].is_convex):
+        if (kind == "convex") != (
+            self.moving.shape.is_convex and self.obstacles[k].shape.is_convex
+        ):
             raise RefusedError(f"obstacle {k}: a {kind} claim about bodies that are not")
         scratch = Report()
         try:
             found = kinds[kind](self.obstacles[k], content, scratch)
         except RefusedError as error:
             raise RefusedError(f"obstacle {k}: {error}") from error
+        self.report.has_cover = self.report.has_cover or scratch.has_cover
         if scratch.partly:
             self.report.partly = True
             self.report.unchecked += [f"obstacle {k}: {line}" for line in scratch.unchecked]
         return found
 
-    def told(self, line: str, since: int, by_boxes: str = "") -> None:
+    def report_line(self, line: str, since: int, by_boxes: str = "") -> None:
         """Reports a claim as valid, unless a part of it was left unchecked since ``since``."""
         if len(self.report.unchecked) == since:
             self.report.holds.append(line)
@@ -1252,8 +1595,9 @@ class Scene:
         def solid(body: Body, near: Any, report: Report) -> Fraction:
             check_solid_near(near)
             upper = number(near["points"]["distance"]) if "points" in near else Fraction()
-            if self.moving.facets and body.facets:
-                solid_distance(self.moving, body, {"near": near, "lower": 0.0, "cover": ""}, report)
+            moving, fixed = self.moving.as_solid(), body.as_solid()
+            if moving.facets and fixed.facets:
+                solid_near(moving, fixed, near, report)
             else:
                 # The file does not number the facets of a convex body.
                 report.partly = True
@@ -1270,15 +1614,20 @@ class Scene:
             distance(self.moving, body, {"gap": gap}, report)
             return number(gap["gap"])
 
-        def solid(_: Body, claim: Any, report: Report) -> Fraction:
-            check_letters(fields(claim, "lower near cover")["cover"], "mfpqwxs")
-            check_solid_near(claim["near"])
-            report.partly = True
-            report.unchecked.append(f"that it is at least {claim['lower']!r} away")
+        def solid(body: Body, claim: Any, report: Report) -> Fraction:
+            moving, fixed = self.moving.as_solid(), body.as_solid()
+            if moving.facets and fixed.facets:
+                solid_distance(moving, fixed, claim, report)
+            else:
+                # The file has no facets of a convex body.
+                check_solid_near(fields(claim, "lower near cover")["near"])
+                check_letters(claim["cover"], "mfpqwxs")
+                report.partly = True
+                report.unchecked.append(f"that it is at least {claim['lower']!r} away")
             return number(claim["lower"])
 
         if claim is None:
-            proven, least = box_gap(self.box, box(self.obstacles[k])), length * length
+            proven, least = box_gap(self.box, body_box(self.obstacles[k])), length * length
         else:
             proven, least = self.part(k, claim, {"convex": convex, "solid": solid}), length
         return bool(proven > least if strictly else proven >= least)
@@ -1290,7 +1639,7 @@ class Scene:
         upper, claims = self.near(nearest, claim["near"]), self.named(claim["apart"])
         if not 0 <= lower <= upper:
             raise RefusedError("the bounds are in the wrong order")
-        self.told(f"obstacle {nearest} is at most {float(upper)!r} away", open_lines)
+        self.report_line(f"obstacle {nearest} is at most {float(upper)!r} away", open_lines)
         open_lines = len(self.report.unchecked)
         for k in range(len(self.obstacles)) if lower > 0 else claims:
             if not self.is_apart(k, claims.get(k), lower, strictly=False):
@@ -1298,7 +1647,7 @@ class Scene:
         if lower > 0:
             all_of = f"none of {len(self.obstacles)} obstacles"
             by_boxes = self.boxed(claims, f"are not nearer than {float(lower)!r}")
-            self.told(f"{all_of} is nearer than {float(lower)!r}", open_lines, by_boxes)
+            self.report_line(f"{all_of} is nearer than {float(lower)!r}", open_lines, by_boxes)
 
     def within(self, claim: Any) -> None:
         fields(claim, "length closer undecided apart")
@@ -1314,14 +1663,14 @@ class Scene:
             if self.near(k, near) > (number(length) if length is not None else math.inf):
                 raise RefusedError(f"obstacle {k} is not proven to be so near")
         are = "are proven to be" if open_ones else "are"
-        self.told(f"{len(closer)} obstacles {are} at most {length!r} away", open_lines)
+        self.report_line(f"{len(closer)} obstacles {are} at most {length!r} away", open_lines)
         open_lines = len(self.report.unchecked)
         others = [k for k in range(len(self.obstacles)) if k not in closer and k not in open_ones]
         for k in others:
             if length is None or not self.is_apart(k, claims.get(k), number(length), strictly=True):
                 raise RefusedError(f"obstacle {k} is not proven to be so far away")
         by_boxes = self.boxed([*closer, *open_ones, *claims], "are farther")
-        self.told(f"{len(others)} obstacles are farther", open_lines, by_boxes)
+        self.report_line(f"{len(others)} obstacles are farther", open_lines, by_boxes)
         if open_ones:
             self.report.unchecked.append(f"{len(open_ones)} obstacles, of which nothing is claimed")
 
@@ -1342,20 +1691,24 @@ class Scene:
         if stop is not None:
             upper = bounds[whole(stop, len(self.obstacles))][1]
             if upper == -math.inf and lower == 0:
-                self.told(f"obstacle {stop} overlaps the moving body", open_lines)
+                self.report_line(f"obstacle {stop} overlaps the moving body", open_lines)
                 return
             if upper is None or lower is None or lower > max(upper, 0):
                 raise RefusedError(f"obstacle {stop} is not proven to stop the moving body")
-            self.told(f"obstacle {stop} stops it by {float(upper)!r}", open_lines)
+            self.report_line(f"obstacle {stop} stops it by {float(upper)!r}", open_lines)
         for k, body in enumerate(self.obstacles):
-            bound = bounds[k][0] if k in bounds else box_entry(self.box, box(body), d, self.min_gap)
+            bound = (
+                bounds[k][0]
+                if k in bounds
+                else box_entry(self.box, body_box(body), d, self.min_gap)
+            )
             overlaps = k in bounds and bounds[k][1] == -math.inf
             if overlaps or not beyond(bound, lower) or (bound == 0 and k not in bounds):
                 raise RefusedError(f"obstacle {k} is not proven to stop nothing before")
         never = "never" if lower is None else f"not before a translation of {float(lower)!r}"
         by_boxes = self.boxed(bounds, f"stop the moving body {never}")
         line = f"{len(self.obstacles)} obstacles stop the moving body {never}"
-        self.told(line, open_lines, by_boxes)
+        self.report_line(line, open_lines, by_boxes)
 
     def passed(self, k: int, claim: Any, d: Vector) -> Any:
         """Returns bounds of the translation at which an obstacle stops the body, or None."""
@@ -1378,7 +1731,7 @@ class Scene:
 
     def convex_bounds(self, body: Body, answer: Any, d: Vector, report: Report) -> Any:
         ((kind, of),) = answer.items()
-        back, never = scaled(d, Fraction(-1)), (_NEVER, _NEVER)
+        back, never = negative(d), (_NEVER, _NEVER)
         if kind == "blocked":
             proof = of["contact"]["certificate"]
             contact(self.moving, body, d, proof, report, "along the direction", self.min_gap)
@@ -1418,63 +1771,12 @@ class Scene:
             raise RefusedError("the shadows overlap by more than the graze tolerance")
 
 
-Whole: TypeAlias = tuple[int, int, int]
+# All directions
+# --------------
 
-#: Maximum number of pairs of boxes in the search for facets that block a free direction.
-MOST_LOOKS = 5_000_000
 #: Maximum depth of a cell, and the fixed-point unit of slopes.
 _DEEPEST = 50
 _PARTS = 1 << 60
-
-
-@dataclass
-class Box:
-    """A box of facets with integer coordinates: a single facet, or two boxes."""
-
-    low: Whole
-    high: Whole
-    facet: int | None
-    parts: tuple[Box, ...] = ()
-
-
-def boxes(triangles: Sequence[tuple[Whole, Whole, Whole]]) -> Box:
-    """Builds a tree of boxes, halved along the longest side."""
-
-    def around(t: tuple[Whole, Whole, Whole], of: Any) -> Whole:
-        return of(c[0] for c in t), of(c[1] for c in t), of(c[2] for c in t)
-
-    def build(all_of: list[Box]) -> Box:
-        if len(all_of) == 1:
-            return all_of[0]
-        low = tuple(min(b.low[k] for b in all_of) for k in range(3))
-        high = tuple(max(b.high[k] for b in all_of) for k in range(3))
-        axis = max(range(3), key=lambda k: high[k] - low[k])
-        all_of.sort(key=lambda b: b.low[axis] + b.high[axis])
-        half = len(all_of) // 2
-        parts = build(all_of[:half]), build(all_of[half:])
-        return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]), None, parts)
-
-    return build([Box(around(t, min), around(t, max), k) for k, t in enumerate(triangles)])
-
-
-def _dot(a: Whole, b: Whole) -> int:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _cross(a: Whole, b: Whole) -> Whole:
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
-
-
-def _minus(a: Whole, b: Whole) -> Whole:
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
-
-
-def _negative(a: Whole) -> Whole:
-    return -a[0], -a[1], -a[2]
 
 
 @dataclass
@@ -1487,7 +1789,7 @@ class Polygon:
 
     def clipped(self, form: Whole, axis: int, sign: int) -> Polygon:
         """Returns the part of the polygon where a linear form is not negative."""
-        sides = [_dot(form, c) for c in self.corners]
+        sides = [dot(form, c) for c in self.corners]
         kept = Polygon([], [])
         for k, (corner, edge) in enumerate(zip(self.corners, self.edges, strict=True)):
             here, there = sides[k], sides[(k + 1) % len(sides)]
@@ -1495,78 +1797,77 @@ class Polygon:
                 kept.corners.append(corner)
                 kept.edges.append(form if here == 0 and there < 0 else edge)
             if (here > 0 and there < 0) or (here < 0 and there > 0):
-                at = _cross(edge, form)
-                kept.corners.append(at if at[axis] * sign > 0 else _negative(at))
+                at = cross(edge, form)
+                kept.corners.append(at if at[axis] * sign > 0 else negative(at))
                 kept.edges.append(form if here > 0 else edge)
         return kept
 
     def is_region(self) -> bool:
         first = self.corners[0]
         for other in self.corners[1:]:
-            normal = _cross(first, other)
+            normal = cross(first, other)
             if any(normal):
-                return any(_dot(normal, c) for c in self.corners)
+                return any(dot(normal, c) for c in self.corners)
         return False
 
     def holds(self, other: Polygon) -> bool:
-        return all(_dot(e, c) >= 0 for e in self.edges for c in other.corners)
+        return all(dot(e, c) >= 0 for e in self.edges for c in other.corners)
+
+
+def face_each_other(f: Corners, g: Corners, ahead: Whole, back: Whole) -> bool:
+    """Checks whether two coplanar facets face each other with overlapping interiors."""
+    if dot(ahead, back) <= 0:
+        return False
+    for one, other in ((f, g), (g, f)):
+        for k in range(3):
+            across = cross(ahead, minus(one[k], one[k - 1]))
+            inner = dot(across, minus(one[k - 2], one[k]))
+            if all(dot(across, minus(c, one[k])) * inner <= 0 for c in other):
+                return False
+    return True
+
+
+def blocking_cone(f: Corners, g: Corners) -> list[Whole]:
+    """Returns the forms of the cone that facets ``f`` (moving) and ``g`` (fixed) block.
+
+    The list is empty if they block nothing. A side of the cone over the differences is spanned by a
+    vertex of one facet and an edge of the other, and has all nine differences on one side.
+    """
+    ahead = cross(minus(f[1], f[0]), minus(f[2], f[0]))
+    back = negative(cross(minus(g[1], g[0]), minus(g[2], g[0])))
+    between = [minus(q, p) for p in f for q in g]
+    if not any(dot(ahead, m) or dot(back, m) for m in between):
+        return [ahead] if face_each_other(f, g, ahead, back) else []
+    spanned = [(minus(g[a], p), minus(g[a - 1], p)) for p in f for a in range(3)]
+    spanned += [(minus(q, f[a]), minus(q, f[a - 1])) for q in g for a in range(3)]
+    sides: list[Whole] = []
+    for u, v in spanned:
+        form = cross(u, v)
+        heights = [dot(form, m) for m in between]
+        if any(heights) and min(heights) >= 0:
+            sides.append(form)
+        elif any(heights) and max(heights) <= 0:
+            sides.append(negative(form))
+    return [ahead, back, *sides] if sides else []
 
 
 @dataclass
 class Sphere:
     """The facets of two bodies with integer coordinates, and the directions that they block."""
 
-    bodies: tuple[list[tuple[Whole, Whole, Whole]], list[tuple[Whole, Whole, Whole]]]
+    bodies: tuple[list[Corners], list[Corners]]
     trees: tuple[Box, Box]
     #: Boxes inside the moving and the fixed body, as least and greatest coordinates.
-    inner: tuple[list[tuple[Whole, Whole]], list[tuple[Whole, Whole]]] = ([], [])
+    inner: tuple[list[Bounds[int]], list[Bounds[int]]] = ([], [])
     cones: dict[tuple[int, int], list[Whole]] = field(default_factory=dict)
-    looks: int = 0
+    #: Number of pairs of boxes that the search has visited.
+    pairs: int = 0
 
     def cone(self, pair: tuple[int, int]) -> list[Whole]:
         """Returns forms that are all positive exactly on the directions that two facets block."""
         if pair not in self.cones:
-            self.cones[pair] = blocking(self.bodies[0][pair[0]], self.bodies[1][pair[1]])
+            self.cones[pair] = blocking_cone(self.bodies[0][pair[0]], self.bodies[1][pair[1]])
         return self.cones[pair]
-
-
-def blocking(f: tuple[Whole, Whole, Whole], g: tuple[Whole, Whole, Whole]) -> list[Whole]:
-    """Returns the forms of the cone that facets ``f`` (moving) and ``g`` (fixed) block.
-
-    The list is empty if they block nothing. A side of the cone over the differences is spanned by a
-    vertex of one facet and an edge of the other, and has all nine differences on one side.
-    """
-    ahead = _cross(_minus(f[1], f[0]), _minus(f[2], f[0]))
-    back = _negative(_cross(_minus(g[1], g[0]), _minus(g[2], g[0])))
-    between = [_minus(q, p) for p in f for q in g]
-    if not any(_dot(ahead, m) or _dot(back, m) for m in between):
-        return [ahead] if faces(f, g, ahead, back) else []
-    spanned = [(_minus(g[a], p), _minus(g[a - 1], p)) for p in f for a in range(3)]
-    spanned += [(_minus(q, f[a]), _minus(q, f[a - 1])) for q in g for a in range(3)]
-    sides: list[Whole] = []
-    for u, v in spanned:
-        form = _cross(u, v)
-        heights = [_dot(form, m) for m in between]
-        if any(heights) and min(heights) >= 0:
-            sides.append(form)
-        elif any(heights) and max(heights) <= 0:
-            sides.append(_negative(form))
-    return [ahead, back, *sides] if sides else []
-
-
-def faces(
-    f: tuple[Whole, Whole, Whole], g: tuple[Whole, Whole, Whole], ahead: Whole, back: Whole
-) -> bool:
-    """Checks whether two coplanar facets face each other with overlapping interiors."""
-    if _dot(ahead, back) <= 0:
-        return False
-    for one, other in ((f, g), (g, f)):
-        for k in range(3):
-            across = _cross(ahead, _minus(one[k], one[k - 1]))
-            inner = _dot(across, _minus(one[k - 2], one[k]))
-            if all(_dot(across, _minus(c, one[k])) * inner <= 0 for c in other):
-                return False
-    return True
 
 
 @dataclass(frozen=True)
@@ -1600,93 +1901,14 @@ class Cell:
     def polygon(self) -> Polygon:
         corners = [self.corner(*at) for at in ((0, 0), (1, 0), (1, 1), (0, 1))]
         middle = tuple(sum(c[k] for c in corners) for k in range(3))
-        edges = [_cross(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
+        edges = [cross(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
         inner = (middle[0], middle[1], middle[2])
-        return Polygon(corners, [e if _dot(e, inner) > 0 else _negative(e) for e in edges])
+        return Polygon(corners, [e if dot(e, inner) > 0 else negative(e) for e in edges])
 
     def quarters(self) -> list[Cell]:
         u, v = self.at
         places = ((2 * u + a, 2 * v + b) for b in (0, 1) for a in (0, 1))
         return [Cell(self.side, self.depth + 1, place) for place in places]
-
-
-def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
-    """Checks the classification of all directions, cell by cell, in integers."""
-    fields(claim, "tolerance start_overlap cells", "shrunk boxes")
-    refuses_overlap = refuses(claim["start_overlap"])
-    sphere = whole_bodies(moving, fixed, claim, report)
-    stack = [Cell(side, 0, (0, 0)) for side in range(5, -1, -1)]
-    count = {"blocked": 0, "inner": 0, "open": 0, "undecided": 0}
-    if any(sphere.inner) and not refuses_overlap:
-        raise RefusedError("inner boxes prove nothing if overlaps at the start are ignored")
-    for k in range(2):
-        for at, box_ in enumerate(sphere.inner[k]):
-            if not is_inside(sphere, k, box_):
-                raise RefusedError(f"box {at} is not inside the {('moving', 'fixed')[k]} body")
-    free, undecided, skipped = 0.0, 0.0, 0
-    for said in listed(claim["cells"]):
-        if not stack:
-            raise RefusedError("there are more cells than the sphere has")
-        cell = stack.pop()
-        if said == "cut":
-            if cell.depth == _DEEPEST:
-                raise RefusedError("a cell is divided too often")
-            stack += reversed(cell.quarters())
-            continue
-        kind, content = one_of(said, *count)
-        count[kind] += 1
-        if kind == "inner":
-            a, b = content
-            near = sphere.inner[0][whole(a, len(sphere.inner[0]))]
-            far = sphere.inner[1][whole(b, len(sphere.inner[1]))]
-            if not all(is_between(near, far, c) for c in cell.polygon().corners):
-                raise RefusedError(f"boxes {content} do not block all of a cell")
-            continue
-        pairs = [pair_of(p, sphere) for p in ([content] if kind == "blocked" else content)]
-        if kind == "blocked":
-            corners = cell.polygon().corners
-            cone = sphere.cone(pairs[0])
-            if not cone or any(_dot(form, c) <= 0 for form in cone for c in corners):
-                raise RefusedError(f"facets {content} do not block all of a cell")
-            continue
-        left = rest(sphere, cell, pairs)
-        around = sum(solid_angle(p.corners) for p in left if p.is_region())
-        if kind == "undecided":
-            undecided += around
-            continue
-        free += around
-        if sphere.looks > MOST_LOOKS:
-            skipped += 1
-            continue
-        for polygon in left:
-            met = first_met(sphere, cell, polygon)
-            if met is not None:
-                raise RefusedError(
-                    f"facets {list(met)} block a direction that is claimed to be free"
-                )
-    if stack:
-        raise RefusedError("the cells do not cover the sphere")
-    summary(report, count, [free, undecided], skipped)
-    report.partly = True
-    if refuses_overlap:
-        report.unchecked.append("that the bodies do not overlap where they are")
-
-
-def summary(report: Report, count: dict[str, int], areas: list[float], skipped: int) -> None:
-    free, undecided = (f"{100 * area / (4 * math.pi):.6g} %" for area in areas)
-    told = f"{sum(count.values())} cells cover the sphere"
-    told += f", {count['blocked']} are blocked by two facets each"
-    if count["inner"]:
-        told += f", {count['inner']} by two boxes inside the bodies each"
-    if count["open"]:
-        told += f", {count['open'] - skipped} are decided exactly"
-    report.holds.append(f"{told}: about {free} of all directions are free")
-    if count["undecided"]:
-        report.unchecked.append(f"{count['undecided']} cells are undecided: about {undecided}")
-    if skipped:
-        report.unchecked.append(
-            f"that nothing else blocks the free parts of {skipped} cells: too many pairs"
-        )
 
 
 def pair_of(value: Any, sphere: Sphere) -> tuple[int, int]:
@@ -1709,35 +1931,31 @@ def whole_bodies(moving: Body, fixed: Body, claim: Any, report: Report) -> Spher
                 raise RefusedError("the shrunk bodies have other vertices")
             ways = [minus(a, b) for a, b in zip(points, bodies[k].points, strict=True)]
             farthest = max(farthest, *(math.sqrt(float(dot(w, w))) for w in ways))
-            bodies[k] = Body(points, bodies[k].rows, bodies[k].offset, bodies[k].facets)
+            bodies[k] = replace(bodies[k], shape=replace(bodies[k].shape, points=points))
         report.unchecked.append(
             f"what shrinking by {float(tolerance / 2)!r} makes of the bodies: vertices are moved "
             f"by up to {farthest:.3e}"
         )
     placed = [[body.at(k) for k in range(len(body.points))] for body in bodies]
     origin, inner = moving.offset, []
-    for said in listed(claim.get("boxes", [[], []])):
-        ends = [(vector(fields(of, "low high")["low"]), vector(of["high"])) for of in listed(said)]
+    for stored in listed(claim.get("boxes", [[], []])):
+        sides = [fields(of, "low high") for of in listed(stored)]
+        ends = [(vector(of["low"]), vector(of["high"])) for of in sides]
         inner.append([(plus(low, origin), plus(high, origin)) for low, high in ends])
     if len(inner) != 2:
         raise NoProofError("inner boxes are not given for both bodies")
-    told = [v for boxes_ in inner for ends in boxes_ for v in ends]
-    unit_of = math.lcm(*(x.denominator for points in (*placed, told) for v in points for x in v))
-
-    def units(v: Vector) -> Whole:
-        return int(v[0] * unit_of), int(v[1] * unit_of), int(v[2] * unit_of)
-
-    sides = []
-    for body, points in zip(bodies, placed, strict=True):
-        at = [units(v) for v in points]
-        sides.append([(at[a], at[b], at[c]) for a, b, c in body.facets])
-    within = [[(units(low), units(high)) for low, high in ends] for ends in inner]
-    return Sphere((sides[0], sides[1]), (boxes(sides[0]), boxes(sides[1])), (within[0], within[1]))
+    of_boxes = [[v for ends in boxes_ for v in ends] for boxes_ in inner]
+    (*at, p_boxes, q_boxes), _ = in_units([*placed, *of_boxes])
+    f, g = (
+        [(v[a], v[b], v[c]) for a, b, c in body.facets] for body, v in zip(bodies, at, strict=True)
+    )
+    within = [list(zip(ends[::2], ends[1::2], strict=True)) for ends in (p_boxes, q_boxes)]
+    return Sphere((f, g), (box_tree(f), box_tree(g)), (within[0], within[1]))
 
 
-def is_between(near: tuple[Whole, Whole], far: tuple[Whole, Whole], d: Whole) -> bool:
+def is_between(near: Bounds[int], far: Bounds[int], d: Whole) -> bool:
     """Checks whether a positive multiple of ``d`` is inside the box of differences of two boxes."""
-    low, high = _minus(far[0], near[1]), _minus(far[1], near[0])
+    low, high = minus(far[0], near[1]), minus(far[1], near[0])
     after, before = Fraction(0), None
     for k in range(3):
         if d[k] == 0:
@@ -1750,7 +1968,54 @@ def is_between(near: tuple[Whole, Whole], far: tuple[Whole, Whole], d: Whole) ->
     return before is None or after < before
 
 
-def is_inside(sphere: Sphere, side: int, box_: tuple[Whole, Whole]) -> bool:
+def is_parted(facet: Corners, low: Whole, high: Whole) -> bool:
+    """Checks whether a plane separates a facet from the interior of a box."""
+    a, b, c = facet
+    edges = minus(b, a), minus(c, b), minus(a, c)
+    across = [cross(edges[0], edges[1])]
+    for x, y, z in edges:
+        across += [(0, -z, y), (z, 0, -x), (-y, x, 0)]
+    for n in across:
+        least = sum(n[k] * (low[k] if n[k] > 0 else high[k]) for k in range(3))
+        most = sum(n[k] * (high[k] if n[k] > 0 else low[k]) for k in range(3))
+        heights = [dot(n, p) for p in facet]
+        if least < most and (max(heights) <= least or min(heights) >= most):
+            return True
+    return False
+
+
+def winding(sphere: Sphere, side: int, at: Whole) -> int | None:
+    """Returns the winding number of a body around a point, from a ray along ``x``.
+
+    The coordinates of ``at`` are in sixteenths. Returns None if the ray meets an edge.
+    """
+    stack, count = [sphere.trees[side]], 0
+    while stack:
+        node = stack.pop()
+        beside = any(
+            16 * node.bounds[0][k] > at[k] or 16 * node.bounds[1][k] < at[k] for k in (1, 2)
+        )
+        if beside or 16 * node.bounds[1][0] < at[0]:
+            continue
+        if node.facet is None:
+            stack += node.parts
+            continue
+        facet = sphere.bodies[side][node.facet]
+        a, b, c = (minus((16 * p[0], 16 * p[1], 16 * p[2]), at) for p in facet)
+        turns = [p[1] * q[2] - p[2] * q[1] for p, q in ((a, b), (b, c), (c, a))]
+        if min(turns) < 0 < max(turns):
+            continue
+        if 0 in turns:
+            return None
+        ahead = dot(cross(minus(b, a), minus(c, a)), a)
+        if ahead == 0:
+            return None
+        if (ahead > 0) == (turns[0] > 0):
+            count += 1 if turns[0] > 0 else -1
+    return count
+
+
+def is_inside(sphere: Sphere, side: int, box_: Bounds[int]) -> bool:
     """Checks whether a box is inside a body: no facet meets its interior, and a ray exits."""
     low, high = box_
     if any(a >= b for a, b in zip(low, high, strict=True)):
@@ -1758,7 +2023,7 @@ def is_inside(sphere: Sphere, side: int, box_: tuple[Whole, Whole]) -> bool:
     stack = [sphere.trees[side]]
     while stack:
         node = stack.pop()
-        if any(node.low[k] >= high[k] or node.high[k] <= low[k] for k in range(3)):
+        if any(node.bounds[0][k] >= high[k] or node.bounds[1][k] <= low[k] for k in range(3)):
             continue
         if node.facet is None:
             stack += node.parts
@@ -1773,64 +2038,19 @@ def is_inside(sphere: Sphere, side: int, box_: tuple[Whole, Whole]) -> bool:
     return False
 
 
-def is_parted(facet: tuple[Whole, Whole, Whole], low: Whole, high: Whole) -> bool:
-    """Checks whether a plane separates a facet from the interior of a box."""
-    a, b, c = facet
-    edges = _minus(b, a), _minus(c, b), _minus(a, c)
-    across = [_cross(edges[0], edges[1])]
-    for x, y, z in edges:
-        across += [(0, -z, y), (z, 0, -x), (-y, x, 0)]
-    for n in across:
-        least = sum(n[k] * (low[k] if n[k] > 0 else high[k]) for k in range(3))
-        most = sum(n[k] * (high[k] if n[k] > 0 else low[k]) for k in range(3))
-        heights = [_dot(n, p) for p in facet]
-        if least < most and (max(heights) <= least or min(heights) >= most):
-            return True
-    return False
-
-
-def winding(sphere: Sphere, side: int, at: Whole) -> int | None:
-    """Returns the winding number of a body around a point, from a ray along ``x``.
-
-    The coordinates of ``at`` are in sixteenths. Returns None if the ray meets an edge.
-    """
-    stack, count = [sphere.trees[side]], 0
-    while stack:
-        node = stack.pop()
-        beside = any(16 * node.low[k] > at[k] or 16 * node.high[k] < at[k] for k in (1, 2))
-        if beside or 16 * node.high[0] < at[0]:
-            continue
-        if node.facet is None:
-            stack += node.parts
-            continue
-        facet = sphere.bodies[side][node.facet]
-        a, b, c = (_minus((16 * p[0], 16 * p[1], 16 * p[2]), at) for p in facet)
-        turns = [p[1] * q[2] - p[2] * q[1] for p, q in ((a, b), (b, c), (c, a))]
-        if min(turns) < 0 < max(turns):
-            continue
-        if 0 in turns:
-            return None
-        ahead = _dot(_cross(_minus(b, a), _minus(c, a)), a)
-        if ahead == 0:
-            return None
-        if (ahead > 0) == (turns[0] > 0):
-            count += 1 if turns[0] > 0 else -1
-    return count
-
-
 def is_met(cone: list[Whole], polygon: Polygon, cell: Cell) -> bool:
     """Checks whether a cone contains a direction of a polygon."""
-    if not cone or any(all(_dot(form, c) <= 0 for c in polygon.corners) for form in cone):
+    if not cone or any(all(dot(form, c) <= 0 for c in polygon.corners) for form in cone):
         return False
     for form in cone:
         polygon = polygon.clipped(form, cell.axes[0], cell.sign)
         if not polygon.corners:
             return False
     # If each form is positive at some corner, all are positive at the mean of the corners.
-    return all(any(_dot(form, c) > 0 for c in polygon.corners) for form in cone)
+    return all(any(dot(form, c) > 0 for c in polygon.corners) for form in cone)
 
 
-def rest(sphere: Sphere, cell: Cell, pairs: list[tuple[int, int]]) -> list[Polygon]:
+def remainder(sphere: Sphere, cell: Cell, pairs: list[tuple[int, int]]) -> list[Polygon]:
     """Returns the remainder of a cell after the cones of some pairs of facets are removed."""
     left = [cell.polygon()]
     for pair in pairs:
@@ -1841,7 +2061,7 @@ def rest(sphere: Sphere, cell: Cell, pairs: list[tuple[int, int]]) -> list[Polyg
                 continue
             inner = polygon
             for form in cone:
-                outer = inner.clipped(_negative(form), cell.axes[0], cell.sign)
+                outer = inner.clipped(negative(form), cell.axes[0], cell.sign)
                 if outer.corners:
                     after.append(outer)
                 inner = inner.clipped(form, cell.axes[0], cell.sign)
@@ -1851,44 +2071,6 @@ def rest(sphere: Sphere, cell: Cell, pairs: list[tuple[int, int]]) -> list[Polyg
         alone = [p for p in after if not p.is_region() and not any(r.holds(p) for r in regions)]
         left = regions + alone
     return left
-
-
-def first_met(sphere: Sphere, cell: Cell, polygon: Polygon) -> tuple[int, int] | None:
-    """Finds a pair of facets that blocks a direction of a polygon."""
-    k, i, j = cell.axes
-    ends = []
-    for axis in (i, j):
-        below = [c[axis] * _PARTS // (c[k] * cell.sign) for c in polygon.corners]
-        ends.append((min(below), max(below) + 1))
-    stack = [sphere.trees]
-    while stack:
-        a, b = stack.pop()
-        sphere.looks += 1
-        low, high = _minus(b.low, a.high), _minus(b.high, a.low)
-        if is_beside(cell, ends, low, high):
-            continue
-        if a.facet is None and (b.facet is not None or _extent(a) >= _extent(b)):
-            stack += [(part, b) for part in a.parts]
-        elif b.facet is None:
-            stack += [(a, part) for part in b.parts]
-        elif a.facet is not None:
-            pair = a.facet, b.facet
-            if not away(sphere, pair, polygon) and is_met(sphere.cone(pair), polygon, cell):
-                return pair
-    return None
-
-
-def away(sphere: Sphere, pair: tuple[int, int], polygon: Polygon) -> bool:
-    """Checks whether one of two facets faces away from all directions of a polygon."""
-    for facet, sign in ((sphere.bodies[0][pair[0]], 1), (sphere.bodies[1][pair[1]], -1)):
-        normal = _cross(_minus(facet[1], facet[0]), _minus(facet[2], facet[0]))
-        if all(sign * _dot(normal, c) <= 0 for c in polygon.corners):
-            return True
-    return False
-
-
-def _extent(box: Box) -> int:
-    return max(_minus(box.high, box.low))
 
 
 def is_beside(cell: Cell, ends: list[tuple[int, int]], low: Whole, high: Whole) -> bool:
@@ -1906,6 +2088,34 @@ def is_beside(cell: Cell, ends: list[tuple[int, int]], low: Whole, high: Whole) 
             elif limit > 0:
                 return True
     return near > far
+
+
+def face_away(sphere: Sphere, pair: tuple[int, int], polygon: Polygon) -> bool:
+    """Checks whether one of two facets faces away from all directions of a polygon."""
+    for facet, sign in ((sphere.bodies[0][pair[0]], 1), (sphere.bodies[1][pair[1]], -1)):
+        normal = cross(minus(facet[1], facet[0]), minus(facet[2], facet[0]))
+        if all(sign * dot(normal, c) <= 0 for c in polygon.corners):
+            return True
+    return False
+
+
+def first_met(sphere: Sphere, cell: Cell, polygon: Polygon) -> tuple[int, int] | None:
+    """Finds a pair of facets that blocks a direction of a polygon."""
+    k, i, j = cell.axes
+    ends = []
+    for axis in (i, j):
+        below = [c[axis] * _PARTS // (c[k] * cell.sign) for c in polygon.corners]
+        ends.append((min(below), max(below) + 1))
+
+    def misses(a: Bounds[int], b: Bounds[int]) -> bool:
+        return is_beside(cell, ends, minus(b[0], a[1]), minus(b[1], a[0]))
+
+    for pair in near_facets(sphere.trees, misses):
+        if pair is None:
+            sphere.pairs += 1
+        elif not face_away(sphere, pair, polygon) and is_met(sphere.cone(pair), polygon, cell):
+            return pair
+    return None
 
 
 def solid_angle(corners: list[Whole]) -> float:
@@ -1926,21 +2136,87 @@ def solid_angle(corners: list[Whole]) -> float:
     return total
 
 
-#: Absolute or relative error of sines, cosines and roots.
-_TINY = Fraction(1, 2**120)
-#: Binary digits after the point in their computation.
-_DIGITS = 160
-_ZERO: Vector = (Fraction(), Fraction(), Fraction())
+def summary(report: Report, count: dict[str, int], areas: list[float], skipped: int) -> None:
+    free, undecided = (f"{100 * area / (4 * math.pi):.6g} %" for area in areas)
+    line = f"{sum(count.values())} cells cover the sphere"
+    line += f", {count['blocked']} are blocked by two facets each"
+    if count["inner"]:
+        line += f", {count['inner']} by two boxes inside the bodies each"
+    if count["open"]:
+        line += f", {count['open'] - skipped} are decided exactly"
+    report.holds.append(f"{line}: about {free} of all directions are free")
+    if count["undecided"]:
+        report.unchecked.append(f"{count['undecided']} cells are undecided: about {undecided}")
+    if skipped:
+        report.unchecked.append(
+            f"that nothing else blocks the free parts of {skipped} cells: too many pairs"
+        )
 
 
-def root_above(square: Fraction) -> Fraction:
-    """Returns an upper bound of the root of a number, with a relative error of at most `_TINY`."""
-    if square <= 0:
-        return Fraction()
-    size = (square.numerator.bit_length() - square.denominator.bit_length()) // 2
-    places = _DIGITS - size
-    scale = Fraction(2) ** (2 * places)
-    return Fraction(math.isqrt(math.ceil(square * scale)) + 1) / Fraction(2) ** places
+def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
+    """Checks the classification of all directions, cell by cell, in integers."""
+    fields(claim, "tolerance start_overlap cells", "shrunk boxes")
+    refuses_overlap = refuses(claim["start_overlap"])
+    sphere = whole_bodies(moving, fixed, claim, report)
+    stack = [Cell(side, 0, (0, 0)) for side in range(5, -1, -1)]
+    count = {"blocked": 0, "inner": 0, "open": 0, "undecided": 0}
+    if any(sphere.inner) and not refuses_overlap:
+        raise RefusedError("inner boxes prove nothing if overlaps at the start are ignored")
+    for k in range(2):
+        for at, box_ in enumerate(sphere.inner[k]):
+            if not is_inside(sphere, k, box_):
+                raise RefusedError(f"box {at} is not inside the {('moving', 'fixed')[k]} body")
+    free, undecided, skipped = 0.0, 0.0, 0
+    for entry in listed(claim["cells"]):
+        if not stack:
+            raise RefusedError("there are more cells than the sphere has")
+        cell = stack.pop()
+        if entry == "cut":
+            if cell.depth == _DEEPEST:
+                raise RefusedError("a cell is divided too often")
+            stack += reversed(cell.quarters())
+            continue
+        kind, content = one_of(entry, *count)
+        count[kind] += 1
+        if kind == "inner":
+            a, b = content
+            near = sphere.inner[0][whole(a, len(sphere.inner[0]))]
+            far = sphere.inner[1][whole(b, len(sphere.inner[1]))]
+            if not all(is_between(near, far, c) for c in cell.polygon().corners):
+                raise RefusedError(f"boxes {content} do not block all of a cell")
+            continue
+        pairs = [pair_of(p, sphere) for p in ([content] if kind == "blocked" else content)]
+        if kind == "blocked":
+            corners = cell.polygon().corners
+            cone = sphere.cone(pairs[0])
+            if not cone or any(dot(form, c) <= 0 for form in cone for c in corners):
+                raise RefusedError(f"facets {content} do not block all of a cell")
+            continue
+        left = remainder(sphere, cell, pairs)
+        around = sum(solid_angle(p.corners) for p in left if p.is_region())
+        if kind == "undecided":
+            undecided += around
+            continue
+        free += around
+        if sphere.pairs > MAX_PAIRS:
+            skipped += 1
+            continue
+        for polygon in left:
+            met = first_met(sphere, cell, polygon)
+            if met is not None:
+                raise RefusedError(
+                    f"facets {list(met)} block a direction that is claimed to be free"
+                )
+    if stack:
+        raise RefusedError("the cells do not cover the sphere")
+    summary(report, count, [free, undecided], skipped)
+    report.partly = True
+    if refuses_overlap:
+        report.unchecked.append("that the bodies do not overlap where they are")
+
+
+# Motions of convex bodies
+# ------------------------
 
 
 @cache
@@ -1976,6 +2252,54 @@ def sine_cosine(angle: Fraction) -> tuple[Fraction, Fraction]:
     return Fraction(sin, one), Fraction(cos, one)
 
 
+#: Maximum angle of a motion, in radians.
+_MOST_TURN = 10**5
+#: Maximum difference of the end of a piece of a motion and the start of the next one. It applies to
+#: the entries of the rotation, and to the translation as a share of the lengths that it is computed
+#: from.
+_JUMP = Fraction(1, 10**12)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A normal at a time, and the claimed gap beyond the minimum gap."""
+
+    time: Fraction
+    normal: Vector
+    gap: Fraction
+    alone: bool
+
+    @classmethod
+    def read(cls, of: Any) -> Plane:
+        fields(of, "time normal gap alone")
+        alone = truth(of["alone"])
+        return cls(number(of["time"]), vector(of["normal"]), number(of["gap"]), alone)
+
+    @property
+    def along(self) -> Fraction:
+        """Returns a lower bound of the gap in multiples of the normal, a rounded unit vector."""
+        return self.gap * (1 - _UNIT_VECTOR)
+
+    def leaves(self, along: Fraction, min_gap: Fraction) -> bool:
+        """Checks whether the remaining gap is at least the claimed gap plus ``min_gap``.
+
+        With a tolerated depth the sum, and the remaining gap, may be negative.
+        """
+        gap, square = self.gap + min_gap, dot(self.normal, self.normal)
+        if gap > 0:
+            return above(along, gap * gap * square)
+        return along >= 0 or along * along <= gap * gap * square
+
+
+def stays(a: Fraction, b: Fraction, c: Fraction) -> bool:
+    """Checks whether ``(1 - x) a + x b - c x (1 - x) / 2`` is positive for ``x`` from 0 to 1.
+
+    This holds if ``sqrt a + sqrt b > sqrt(c / 2)``.
+    """
+    over = c / 2 - a - b
+    return min(a, b) > 0 and (over < 0 or over * over < 4 * a * b)
+
+
 @dataclass
 class Spin:
     """A body that spins evenly; a point ``y`` is at ``place + way (t - since) + E y``.
@@ -2000,7 +2324,7 @@ class Spin:
     @classmethod
     def read(cls, points: list[Vector], piece: Any) -> Spin:
         piece = fields(piece, "since start arm axis rate velocity")
-        body = Body.placed(points, [], piece["start"])
+        body = Body.placed(Shape(points), piece["start"])
         arm, axis = bounded_vector(piece["arm"], "an arm"), vector(piece["axis"])
         rate, way = number(piece["rate"]), bounded_vector(piece["velocity"], "a velocity")
         unit(axis)
@@ -2009,11 +2333,11 @@ class Spin:
         square = dot(axis, axis)
         since, inverse, zero = number(piece["since"]), 1 / root_above(square), Fraction()
         spin = cls(body, since, arm, axis, rate, way, square, inverse, zero, zero)
-        return spin.of(points)
+        return spin.with_points(points)
 
-    def of(self, points: list[Vector]) -> Spin:
+    def with_points(self, points: list[Vector]) -> Spin:
         """Returns this spin with other points."""
-        body = replace(self.body, points=points)
+        body = self.body.with_points(points)
         ways = [plus(self.arm, minus(body.at(k), body.offset)) for k in range(len(points))]
         beside = [cross(self.axis, y) for y in ways]
         radius = root_above(max(dot(y, y) for y in beside) / self.square)
@@ -2047,15 +2371,16 @@ class Spin:
 
     def at(self, k: int, time: Fraction) -> Vector:
         """Returns a point in the world."""
-        x, y, z = (
-            self.foot(e, time) + self.one(k, e, time)
-            for e in (
-                (Fraction(1), Fraction(0), Fraction(0)),
-                (Fraction(0), Fraction(1), Fraction(0)),
-                (Fraction(0), Fraction(0), Fraction(1)),
-            )
-        )
+        x, y, z = (self.foot(e, time) + self.one(k, e, time) for e in _UNITS)
         return x, y, z
+
+    def facets(self, facets: list[Triangle], time: Fraction) -> list[Triangle]:
+        """Returns facets of the body in the world."""
+        if not facets:
+            return []
+        turned = self.with_points([v for facet in facets for v in facet])
+        corners = iter([turned.at(k, time) for k in range(3 * len(facets))])
+        return list(zip(corners, corners, corners, strict=True))
 
     def one(self, k: int, n: Vector, time: Fraction) -> Fraction:
         u = self.back(n, time)
@@ -2069,7 +2394,7 @@ class Spin:
         """Returns the part of a vector across the axis."""
         return minus(n, scaled(self.axis, dot(n, self.axis) / self.square))
 
-    def bend(self, ends: Sequence[Plane], sign: int, tightly: bool) -> Fraction:
+    def curvature(self, ends: Sequence[Plane], sign: int, tightly: bool) -> Fraction:
         """Returns an upper bound of ``W . E y`` between two planes.
 
         ``W = sign (alpha^2 n_across + 2 alpha k x dn)`` is affine in the time. ``E y`` across the
@@ -2119,177 +2444,8 @@ class Spin:
         return highest - before + 8 * off
 
 
-#: Maximum angle of a motion, in radians.
-_MOST_TURN = 10**5
-#: Maximum difference of the end of a piece of a motion and the start of the next one. It applies to
-#: the entries of the rotation, and to the translation as a share of the lengths that it is computed
-#: from.
-_JUMP = Fraction(1, 10**12)
-
-
-@dataclass(frozen=True)
-class Plane:
-    """A normal at a time, and the claimed gap beyond the minimum gap."""
-
-    time: Fraction
-    normal: Vector
-    gap: Fraction
-    alone: bool
-
-    @classmethod
-    def read(cls, of: Any) -> Plane:
-        fields(of, "time normal gap alone")
-        alone = truth(of["alone"])
-        return cls(number(of["time"]), vector(of["normal"]), number(of["gap"]), alone)
-
-    @property
-    def along(self) -> Fraction:
-        """Returns a lower bound of the gap in multiples of the normal, a rounded unit vector."""
-        return self.gap * (1 - _UNIT_VECTOR)
-
-    def is_left(self, along: Fraction, min_gap: Fraction) -> bool:
-        """Checks whether the remaining gap is at least the claimed gap plus ``min_gap``.
-
-        With a tolerated depth the sum, and the remaining gap, may be negative.
-        """
-        gap, square = self.gap + min_gap, dot(self.normal, self.normal)
-        if gap > 0:
-            return above(along, gap * gap * square)
-        return along >= 0 or along * along <= gap * gap * square
-
-
-@dataclass
-class Span:
-    """A period in which both bodies spin evenly."""
-
-    moving: Spin
-    fixed: Spin
-    begin: Fraction
-    end: Fraction
-    #: The minimum gap; a negative value is a tolerated depth.
-    min_gap: Fraction
-    #: The sum of the radii of both bodies.
-    swept: Fraction = Fraction()
-
-    def gap(self, n: Vector, time: Fraction) -> Fraction:
-        """Returns a lower bound of ``min_Q n.q - max_P n.p``."""
-        p, q = self.moving, self.fixed
-        highest, lowest = max(p.along(n, time)), min(q.along(n, time))
-        between = q.foot(n, time) - p.foot(n, time)
-        return between + lowest - highest - p.off(n) - q.off(n)
-
-    def has(self, plane: Plane) -> bool:
-        """Checks whether a plane leaves its claimed gap beyond the minimum gap and the radii."""
-        return plane.is_left(self.gap(plane.normal, plane.time), self.min_gap + self.swept)
-
-    def joins(self, a: Plane, b: Plane) -> bool:
-        """Checks whether two planes prove all times between them.
-
-        With ``n = (1 - x) n_a + x n_b`` a point ``y`` of a body has the height ``n . E y``, whose
-        second derivative by ``x`` is ``-W . E y``. It exceeds its chord by at most ``C x (1 - x) /
-        2``, and so does the maximum over all points. Together with the fixed body, with the
-        opposite sign, and with ``n`` times the motion between the axes, the gap is at least ``(1 -
-        x) a + x b - C x (1 - x) / 2``. Let ``G`` be the minimum gap plus the radii. ``G`` times the
-        length of ``n`` is below its chord. If ``G`` is negative, because a depth is tolerated, this
-        product exceeds its chord by at most ``-G |dn|^2 x (1 - x)``.
-        """
-        if a.time == b.time:
-            return True
-        if a.alone:
-            return a.normal == b.normal and a.along > self.lost(a, b)
-        if a.along > self.carried(a, b.time):
-            return True
-        dn = minus(b.normal, a.normal)
-        drift = minus(self.fixed.way, self.moving.way)
-        c = 2 * dot(dn, drift) * (b.time - a.time)
-        core_gap = self.min_gap + self.swept
-        if core_gap < 0:
-            c -= 2 * core_gap * dot(dn, dn) * (1 + Fraction(1, 2**40))
-        return any(
-            stays(
-                a.along,
-                b.along,
-                c + self.moving.bend((a, b), 1, tightly) + self.fixed.bend((a, b), -1, tightly),
-            )
-            for tightly in (False, True)
-        )
-
-    def lost(self, a: Plane, b: Plane) -> Fraction:
-        """Returns a bound of the loss of a plane's gap, along its normal, until another plane."""
-        drift = dot(a.normal, minus(self.fixed.way, self.moving.way)) * (b.time - a.time)
-        risen = self.moving.rise(a.normal, a.time, b.time)
-        sunk = self.fixed.rise(scaled(a.normal, Fraction(-1)), a.time, b.time)
-        return risen + sunk - min(drift, Fraction())
-
-    def carried(self, a: Plane, until: Fraction) -> Fraction:
-        """Returns a bound of the loss of the gap of a plane that the moving body carries along.
-
-        The bound is small if both bodies spin alike. The normal becomes ``E n``. In the frame that
-        turns by ``E`` the moving body rests and the fixed one only translates: the vector between
-        points of both axes and their drift turn by ``E'``. This leaves their parts along the axis
-        unchanged, and their parts across it count along the part of ``n`` across it. With another
-        angular velocity the points of the fixed body are displaced by the difference times their
-        distance from the point of the axis.
-        """
-        p, q = self.moving, self.fixed
-        h = until - a.time
-        feet = [plus(minus(s.body.offset, s.arm), scaled(s.way, a.time - s.since)) for s in (p, q)]
-        beside = p.across(minus(feet[1], feet[0]))
-        swung = root_above(dot(beside, beside)) * min(abs(p.rate) * h, Fraction(2))
-        drift = minus(q.way, p.way)
-        sideways, n = p.across(drift), p.across(a.normal)
-        lost = (swung + root_above(dot(sideways, sideways)) * h) * root_above(dot(n, n))
-        along = dot(a.normal, p.axis) * dot(drift, p.axis) / p.square * h
-        lost -= min(along, Fraction())
-        if (p.axis, p.rate) != (q.axis, q.rate):
-            spins = minus(scaled(q.axis, q.rate * q.inverse), scaled(p.axis, p.rate * p.inverse))
-            room = 8 * _TINY * (abs(p.rate) + abs(q.rate))
-            elsewhere = (root_above(dot(spins, spins)) + room) * h * q.reach
-            lost += elsewhere * root_above(dot(a.normal, a.normal))
-        return lost + 8 * p.off(a.normal)
-
-    def ends(self, pairs: Any, time: Fraction) -> list[tuple[Vector, Vector]]:
-        """Returns the points of pairs of vertices at a time."""
-        p, q = self.moving, self.fixed
-        return [
-            (
-                p.at(whole(pair["moving"], len(p.body.points)), time),
-                q.at(whole(pair["fixed"], len(q.body.points)), time),
-            )
-            for pair in (fields(each, "moving fixed") for each in listed(pairs))
-        ]
-
-    def meets(self, met: Any, time: Fraction) -> None:
-        """Checks that the bodies overlap by more than tolerated, or are within the minimum gap."""
-        off = sum((spin.off(_ONES) for spin in (self.moving, self.fixed)), Fraction())
-        offs, kind, claim = (off, self.rounded()), *one_of(met, "deep", "near")
-
-        def ends(pairs: Any) -> list[tuple[Vector, Vector]]:
-            return self.ends(pairs, time)
-
-        def least(n: Vector) -> Fraction:
-            return self.gap(n, time) - off
-
-        if kind == "deep":
-            is_deep(claim, ends, least, offs, max(-self.min_gap, Fraction()), self.swept)
-        elif kind == "near" and self.min_gap > 0:
-            is_near(claim, ends, offs, self.min_gap, self.swept)
-        else:
-            raise RefusedError(f"{kind!r} does not prove that the bodies meet")
-
-    def rounded(self) -> Fraction:
-        """Returns a bound of the error of points in poses to which depths and distances refer."""
-        spins = (self.moving, self.fixed)
-        sizes = (s.reach + 2 * root_above(dot(s.arm, s.arm)) for s in spins)
-        ways = (root_above(dot(s.way, s.way)) for s in spins)
-        between = minus(self.fixed.body.offset, self.moving.body.offset)
-        whole_ = sum(sizes, sum(ways, root_above(dot(between, between))))
-        return _POSE * whole_
-
-
-_ONES: Vector = (Fraction(1), Fraction(1), Fraction(1))
-#: Relative error of a computed position. Claimed depths refer to such positions.
-_POSE = 256 * _U
+#: Returns the points of pairs of vertices, from the moving and from the fixed body.
+Ends: TypeAlias = Callable[[Any], list[tuple[Vector, Vector]]]
 
 
 def check_steps(steps: Any) -> None:
@@ -2303,6 +2459,13 @@ def check_steps(steps: Any) -> None:
         raise NoProofError(f"unknown start of a search {steps['started_from']!r}")
 
 
+def near_claim(claim: Any) -> Any:
+    """Returns a claim that two points are near each other, after a check of its fields."""
+    for weight in listed(fields(claim, _NEAR)["weights"], 4):
+        number(weight)
+    return claim
+
+
 def deep_claim(claim: Any) -> Any:
     """Returns a claim that bodies overlap, after a check of its fields."""
     fields(claim, "lower upper direction enclosure", "near steps")
@@ -2314,18 +2477,7 @@ def deep_claim(claim: Any) -> Any:
     return claim
 
 
-def near_claim(claim: Any) -> Any:
-    """Returns a claim that two points are near each other, after a check of its fields."""
-    for weight in listed(fields(claim, _NEAR)["weights"], 4):
-        number(weight)
-    return claim
-
-
-#: Returns the points of pairs of vertices, from the moving and from the fixed body.
-Ends: TypeAlias = Callable[[Any], list[tuple[Vector, Vector]]]
-
-
-def is_deep(
+def check_deep(
     claim: Any,
     ends: Ends,
     gap: Callable[[Vector], Fraction],
@@ -2358,14 +2510,14 @@ def is_deep(
         corners = [minus(q, p) for p, q in ends(surface["pairs"])]
         enclosure(corners, surface, max(off[0], deeper))
     # The translation along the direction must separate the bodies up to rounding.
-    reach = swept - gap((-d[0], -d[1], -d[2]))
+    reach = swept - gap(negative(d))
     if reach > upper + off[1]:
         raise RefusedError(
             f"a translation by {float(reach)!r} separates the bodies, not {float(upper)!r}"
         )
 
 
-def is_near(
+def check_near(
     claim: Any,
     ends: Ends,
     off: tuple[Fraction, Fraction],
@@ -2374,23 +2526,160 @@ def is_near(
 ) -> None:
     """Checks that points of both bodies are within a gap; the distance holds up to rounding.
 
-    ``off`` and ``swept`` are those of :func:`is_deep`.
+    ``off`` and ``swept`` are those of :func:`check_deep`.
     """
-    pairs, told = listed(near_claim(claim)["pairs"], 4), number(claim["distance"])
-    if not 0 <= told <= min_gap:
-        raise RefusedError(f"{float(told)!r} is not as near as {float(min_gap)!r}")
-    for length in (min_gap - off[0], told + off[1]):
+    pairs, claimed = listed(near_claim(claim)["pairs"], 4), number(claim["distance"])
+    if not 0 <= claimed <= min_gap:
+        raise RefusedError(f"{float(claimed)!r} is not as near as {float(min_gap)!r}")
+    for length in (min_gap - off[0], claimed + off[1]):
         if not are_cores_near(claim, ends(pairs), length + swept):
             raise RefusedError(f"the points are not as near as {float(length)!r}")
 
 
-def stays(a: Fraction, b: Fraction, c: Fraction) -> bool:
-    """Checks whether ``(1 - x) a + x b - c x (1 - x) / 2`` is positive for ``x`` from 0 to 1.
+def check_contact(
+    met: Any,
+    ends: Ends,
+    gap: Callable[[Vector], Fraction],
+    off: tuple[Fraction, Fraction],
+    min_gap: Fraction,
+    swept: Fraction,
+) -> None:
+    """Checks that convex bodies overlap by more than tolerated, or are within the minimum gap.
 
-    This holds if ``sqrt a + sqrt b > sqrt(c / 2)``.
+    A negative minimum gap is a tolerated depth. See :func:`check_deep` for the
+    other arguments.
     """
-    over = c / 2 - a - b
-    return min(a, b) > 0 and (over < 0 or over * over < 4 * a * b)
+    kind, claim = one_of(met, "deep", "near")
+    if kind == "deep":
+        check_deep(claim, ends, gap, off, max(-min_gap, Fraction()), swept)
+    elif min_gap > 0:
+        check_near(claim, ends, off, min_gap, swept)
+    else:
+        raise RefusedError(f"{kind!r} does not prove that the bodies meet")
+
+
+@dataclass
+class Span:
+    """A period in which both bodies spin evenly."""
+
+    moving: Spin
+    fixed: Spin
+    begin: Fraction
+    end: Fraction
+    #: The minimum gap; a negative value is a tolerated depth.
+    min_gap: Fraction
+    #: The sum of the radii of both bodies.
+    swept: Fraction = Fraction()
+
+    @property
+    def core_gap(self) -> Fraction:
+        """Returns the gap of the bodies without radius: the minimum gap plus both radii."""
+        return self.min_gap + self.swept
+
+    def gap(self, n: Vector, time: Fraction) -> Fraction:
+        """Returns a lower bound of ``min_Q n.q - max_P n.p``."""
+        p, q = self.moving, self.fixed
+        highest, lowest = max(p.along(n, time)), min(q.along(n, time))
+        between = q.foot(n, time) - p.foot(n, time)
+        return between + lowest - highest - p.off(n) - q.off(n)
+
+    def has_gap(self, plane: Plane) -> bool:
+        """Checks whether a plane leaves its claimed gap beyond the minimum gap and the radii."""
+        return plane.leaves(self.gap(plane.normal, plane.time), self.core_gap)
+
+    def joins(self, a: Plane, b: Plane) -> bool:
+        """Checks whether two planes prove all times between them.
+
+        With ``n = (1 - x) n_a + x n_b`` a point ``y`` of a body has the height ``n . E y``, whose
+        second derivative by ``x`` is ``-W . E y``. It exceeds its chord by at most ``C x (1 - x) /
+        2``, and so does the maximum over all points. Together with the fixed body, with the
+        opposite sign, and with ``n`` times the motion between the axes, the gap is at least ``(1 -
+        x) a + x b - C x (1 - x) / 2``. Let ``G`` be the minimum gap plus the radii. ``G`` times the
+        length of ``n`` is below its chord. If ``G`` is negative, because a depth is tolerated, this
+        product exceeds its chord by at most ``-G |dn|^2 x (1 - x)``.
+        """
+        if a.time == b.time:
+            return True
+        if a.alone:
+            return a.normal == b.normal and a.along > self.lost(a, b)
+        if a.along > self.carried(a, b.time):
+            return True
+        dn = minus(b.normal, a.normal)
+        drift = minus(self.fixed.way, self.moving.way)
+        c = 2 * dot(dn, drift) * (b.time - a.time)
+        if self.core_gap < 0:
+            c -= 2 * self.core_gap * dot(dn, dn) * (1 + Fraction(1, 2**40))
+        return any(
+            stays(
+                a.along,
+                b.along,
+                c
+                + self.moving.curvature((a, b), 1, tightly)
+                + self.fixed.curvature((a, b), -1, tightly),
+            )
+            for tightly in (False, True)
+        )
+
+    def lost(self, a: Plane, b: Plane) -> Fraction:
+        """Returns a bound of the loss of a plane's gap, along its normal, until another plane."""
+        drift = dot(a.normal, minus(self.fixed.way, self.moving.way)) * (b.time - a.time)
+        risen = self.moving.rise(a.normal, a.time, b.time)
+        sunk = self.fixed.rise(negative(a.normal), a.time, b.time)
+        return risen + sunk - min(drift, Fraction())
+
+    def carried(self, a: Plane, until: Fraction) -> Fraction:
+        """Returns a bound of the loss of the gap of a plane that the moving body carries along.
+
+        The bound is small if both bodies spin alike. The normal becomes ``E n``. In the frame that
+        turns by ``E`` the moving body rests and the fixed one only translates: the vector between
+        points of both axes and their drift turn by ``E'``. This leaves their parts along the axis
+        unchanged, and their parts across it count along the part of ``n`` across it. With another
+        angular velocity the points of the fixed body are displaced by the difference times their
+        distance from the point of the axis.
+        """
+        p, q = self.moving, self.fixed
+        h = until - a.time
+        feet = [plus(minus(s.body.offset, s.arm), scaled(s.way, a.time - s.since)) for s in (p, q)]
+        beside = p.across(minus(feet[1], feet[0]))
+        swung = root_above(dot(beside, beside)) * min(abs(p.rate) * h, Fraction(2))
+        drift = minus(q.way, p.way)
+        sideways, n = p.across(drift), p.across(a.normal)
+        lost = (swung + root_above(dot(sideways, sideways)) * h) * root_above(dot(n, n))
+        along = dot(a.normal, p.axis) * dot(drift, p.axis) / p.square * h
+        lost -= min(along, Fraction())
+        if (p.axis, p.rate) != (q.axis, q.rate):
+            spins = minus(scaled(q.axis, q.rate * q.inverse), scaled(p.axis, p.rate * p.inverse))
+            room = 8 * _TINY * (abs(p.rate) + abs(q.rate))
+            elsewhere = (root_above(dot(spins, spins)) + room) * h * q.reach
+            lost += elsewhere * root_above(dot(a.normal, a.normal))
+        return lost + 8 * p.off(a.normal)
+
+    def ends(self, pairs: Any, time: Fraction) -> list[tuple[Vector, Vector]]:
+        """Returns the points of pairs of vertices at a time."""
+        p, q = self.moving, self.fixed
+        named = vertex_pairs(pairs, len(p.body.points), len(q.body.points))
+        return [(p.at(i, time), q.at(j, time)) for i, j in named]
+
+    def check_contact(self, met: Any, time: Fraction) -> None:
+        """Checks that the bodies overlap by more than tolerated, or are within the minimum gap."""
+        off = sum((spin.off(_ONES) for spin in (self.moving, self.fixed)), Fraction())
+
+        def ends(pairs: Any) -> list[tuple[Vector, Vector]]:
+            return self.ends(pairs, time)
+
+        def gap(n: Vector) -> Fraction:
+            return self.gap(n, time) - off
+
+        check_contact(met, ends, gap, (off, self.rounded()), self.min_gap, self.swept)
+
+    def rounded(self) -> Fraction:
+        """Returns a bound of the error of points in poses to which depths and distances refer."""
+        spins = (self.moving, self.fixed)
+        sizes = (s.reach + 2 * root_above(dot(s.arm, s.arm)) for s in spins)
+        ways = (root_above(dot(s.way, s.way)) for s in spins)
+        between = minus(self.fixed.body.offset, self.moving.body.offset)
+        whole_ = sum(sizes, sum(ways, root_above(dot(between, between))))
+        return _POSE * whole_
 
 
 def follows(last: Spin, later: Spin) -> bool:
@@ -2444,14 +2733,30 @@ def spans(
     return found
 
 
-def motion(file: File, movers: list[Any], asked: Any, proof: Any, report: Report) -> None:
+def chain(span: Span, planes: list[Plane]) -> Fraction:
+    """Checks that each plane has its gap and joins the next one; returns the proven end time."""
+    before = None
+    for plane in planes:
+        unit(plane.normal)
+        at = float(plane.time)
+        if not span.begin <= plane.time <= span.end or (before and plane.time < before.time):
+            raise RefusedError(f"the plane at {at!r} is out of order")
+        if plane.gap <= 0 or not span.has_gap(plane):
+            raise RefusedError(f"the plane at {at!r} does not leave a gap of {float(plane.gap)!r}")
+        if before is not None and not span.joins(before, plane):
+            raise RefusedError(f"the times from {float(before.time)!r} to {at!r} are not proven")
+        before = plane
+    return span.begin if before is None else before.time
+
+
+def convex_motion(file: File, movers: list[Any], query: Any, proof: Any, report: Report) -> None:
     """Checks the first contact of two moving convex bodies."""
     shapes = [file.shapes[of["body"]] for of in movers]
-    if any(facets for _, facets in shapes) or asked["tolerance"] is not None:
+    if any(shape.facets for shape in shapes) or query["tolerance"] is not None:
         raise NoProofError("this claim needs convex bodies without a tolerance")
-    min_gap = asked["min_gap"]
-    swept = sum((file.radii[of["body"]] for of in movers), Fraction())
-    all_spans = spans(movers, [points for points, _ in shapes], min_gap, swept)
+    min_gap = query["min_gap"]
+    swept = shapes[0].radius + shapes[1].radius
+    all_spans = spans(movers, [shape.points for shape in shapes], min_gap, swept)
     fields(proof, "spans meeting")
     claimed = listed(proof["spans"])
     if len(claimed) > len(all_spans):
@@ -2466,8 +2771,8 @@ def motion(file: File, movers: list[Any], asked: Any, proof: Any, report: Report
     if min_gap < 0:
         meet = f"overlap by more than {float(-min_gap)!r}"
     if any(claimed):
-        told = "throughout the motion" if reached == 1 else f"up to the time {float(reached)!r}"
-        report.holds.append(f"the bodies never {meet} {told}")
+        period = "throughout the motion" if reached == 1 else f"up to the time {float(reached)!r}"
+        report.holds.append(f"the bodies never {meet} {period}")
     meeting = proof["meeting"]
     if meeting is not None:
         time = number(fields(meeting, "time met")["time"])
@@ -2475,53 +2780,68 @@ def motion(file: File, movers: list[Any], asked: Any, proof: Any, report: Report
             raise RefusedError(
                 f"the time at which the bodies {meet} does not follow the proven span"
             )
-        all_spans[len(claimed) - 1].meets(meeting["met"], time)
+        all_spans[len(claimed) - 1].check_contact(meeting["met"], time)
         report.holds.append(f"the bodies {meet} at the time {float(time)!r}")
 
 
-def chain(span: Span, planes: list[Plane]) -> Fraction:
-    """Checks that each plane has its gap and joins the next one; returns the proven end time."""
-    before = None
-    for plane in planes:
-        unit(plane.normal)
-        at = float(plane.time)
-        if not span.begin <= plane.time <= span.end or (before and plane.time < before.time):
-            raise RefusedError(f"the plane at {at!r} is out of order")
-        if plane.gap <= 0 or not span.has(plane):
-            raise RefusedError(f"the plane at {at!r} does not leave a gap of {float(plane.gap)!r}")
-        if before is not None and not span.joins(before, plane):
-            raise RefusedError(f"the times from {float(before.time)!r} to {at!r} are not proven")
-        before = plane
-    return span.begin if before is None else before.time
+# Motions of solids
+# -----------------
 
 
-#: Error of facet points in the world, relative to the size, up to which signs are certain.
-_SURE = Fraction(1, 2**96)
-_UNITS: tuple[Vector, Vector, Vector] = (
-    (Fraction(1), Fraction(), Fraction()),
-    (Fraction(), Fraction(1), Fraction()),
-    (Fraction(), Fraction(), Fraction(1)),
-)
+def node_of_tree(value: Any, end: int) -> int:
+    """Returns a node of a tree in preorder: -1, or a facet index below ``end``."""
+    return -1 if type(value) is int and value == -1 else whole(value, end)
 
 
-def _box(points: Sequence[Vector]) -> tuple[Vector, Vector]:
-    xs, ys, zs = ([p[k] for p in points] for k in range(3))
-    return (min(xs), min(ys), min(zs)), (max(xs), max(ys), max(zs))
+def facet_numbers(numbers: Any, count: int) -> list[int]:
+    """Returns the order of the facets of a body in a proof, which has each of them once."""
+    found = [whole(k, count) for k in listed(numbers)]
+    if sorted(found) != list(range(count)):
+        raise RefusedError("the facets are not those of the body, each once")
+    return found
+
+
+def read_tree(
+    leaves: Sequence[Sequence[Vector]],
+) -> tuple[list[list[int]], list[Bounds[Fraction]]]:
+    """Returns the children and the box of each node of a binary tree.
+
+    The nodes are in preorder. ``leaves`` has the points of each leaf, and no point for a node with
+    two children.
+    """
+    children: list[list[int]] = [[] for _ in leaves]
+    boxes: list[Bounds[Fraction]] = [(_ZERO, _ZERO)] * len(leaves)
+    # The nodes without a parent, among those read from the end.
+    roots: list[int] = []
+    for at in reversed(range(len(leaves))):
+        if leaves[at]:
+            boxes[at] = box_of(leaves[at])
+        else:
+            if len(roots) < 2:
+                raise RefusedError("the nodes do not form a tree")
+            children[at] = [roots.pop(), roots.pop()]
+            boxes[at] = box_of([v for k in children[at] for v in boxes[k]])
+        roots.append(at)
+    if roots != [0]:
+        raise RefusedError("the nodes do not form a tree")
+    return children, boxes
+
+
+def cyclic_orders(corners: Sequence[Vector]) -> list[Sequence[Vector]]:
+    """Returns the corners of a facet, with each of them as the first one."""
+    return [[*corners[k:], *corners[:k]] for k in range(len(corners))]
 
 
 @dataclass
 class Parts:
-    """The facets of a solid, moved inwards as stored in the file, and their tree.
-
-    Nodes are numbered in preorder: the first child of an inner node follows it.
-    """
+    """The facets of a solid, moved inwards as stored in the file, and their tree."""
 
     corners: list[Triangle]
     #: The facet of a leaf, or -1 for an inner node.
     facet: list[int]
-    #: The second child of an inner node.
-    second: list[int]
-    bounds: list[tuple[Vector, Vector]]
+    #: The two children of an inner node.
+    children: list[list[int]]
+    bounds: list[Bounds[Fraction]]
     #: Upper bound of the displacement of a corner.
     moved: Fraction
     #: The facets of closed surfaces, which have an interior.
@@ -2531,60 +2851,35 @@ class Parts:
     @classmethod
     def read(
         cls,
-        points: list[Vector],
-        facets: list[tuple[int, int, int]],
+        shape: Shape,
         of: Any,
-        is_open: Sequence[bool] = (),
     ) -> Parts:
         corners: list[Triangle] = []
         square = Fraction()
         fields(of, "numbers corners tree")
-        numbers = [whole(k, len(facets)) for k in listed(of["numbers"])]
-        if sorted(numbers) != list(range(len(facets))):
-            raise RefusedError("the facets are not those of the body, each once")
+        numbers = facet_numbers(of["numbers"], len(shape.facets))
         for at, triangle in zip(numbers, listed(of["corners"]), strict=True):
             a, b, c = (vector(v) for v in triangle)
             corners.append((a, b, c))
-            x, y, z = (points[k] for k in facets[at])
             # The corners are in cyclic order, with any first corner.
-            square = max(
-                square,
-                min(
-                    max(
-                        dot(minus(u, v), minus(u, v))
-                        for u, v in zip((a, b, c), turned, strict=True)
-                    )
-                    for turned in ((x, y, z), (y, z, x), (z, x, y))
-                ),
-            )
+            nominal = cyclic_orders([shape.points[k] for k in shape.facets[at]])
+            moves = [
+                max(dot(minus(u, v), minus(u, v)) for u, v in zip((a, b, c), order, strict=True))
+                for order in nominal
+            ]
+            square = max(square, min(moves))
         facet = [node_of_tree(k, len(corners)) for k in listed(of["tree"])]
         if sorted(k for k in facet if k >= 0) != list(range(len(corners))):
             raise RefusedError("the parts of the body are not its facets, each once")
-        second = [0] * len(facet)
-        open_: list[int] = []
-        boxes: dict[int, tuple[Vector, Vector]] = {}
-        for at in reversed(range(len(facet))):
-            if facet[at] >= 0:
-                low, high = _box(corners[facet[at]])
-            else:
-                if len(open_) < 2:
-                    raise RefusedError("the nodes do not form a tree")
-                (a, b), second[at] = boxes[open_.pop()], open_[-1]
-                c, d = boxes[open_.pop()]
-                low, high = _box((a, b, c, d))
-            boxes[at] = (low, high)
-            open_.append(at)
-        if open_ != [0]:
-            raise RefusedError("the nodes do not form a tree")
-        bounds = [boxes[k] for k in range(len(facet))]
-        closed = [c for k, c in zip(numbers, corners, strict=True) if not (is_open and is_open[k])]
-        return cls(corners, facet, second, bounds, root_above(square), closed)
+        children, bounds = read_tree([corners[k] if k >= 0 else () for k in facet])
+        closed = [c for k, c in zip(numbers, corners, strict=True) if not shape.is_open[k]]
+        return cls(corners, facet, children, bounds, root_above(square), closed)
 
     def points(self, node: int) -> list[Vector]:
         """Returns the corners of a facet, or of the box of an inner node."""
         if self.facet[node] >= 0:
             return list(self.corners[self.facet[node]])
-        return [(x[0], y[1], z[2]) for x, y, z in product(self.bounds[node], repeat=3)]
+        return box_corners(self.bounds[node])
 
     def middle(self, node: int) -> Vector:
         points = self.points(node)
@@ -2596,7 +2891,7 @@ class Parts:
     def spin(self, node: int, spin: Spin) -> Spin:
         key = (node, spin.since)
         if key not in self.known:
-            self.known[key] = spin.of(self.points(node))
+            self.known[key] = spin.with_points(self.points(node))
         return self.known[key]
 
 
@@ -2632,7 +2927,7 @@ class Cover:
                 parts, at = self.parts[which], nodes[which]
                 if parts.facet[at] >= 0:
                     raise RefusedError(f"entry {number_} splits a facet")
-                both = (at + 1, parts.second[at])
+                both = parts.children[at]
                 pairs = [(k, nodes[1]) if which == 0 else (nodes[0], k) for k in both]
                 stack += [(pairs[1], a, b), (pairs[0], a, b)]
             elif letter == "L":
@@ -2655,13 +2950,13 @@ class Cover:
         n = self.normal(letter, nodes, span, (a, b))
         if not any(n):
             return False
-        kept = span.min_gap * root_above(dot(n, n))
+        kept = span.core_gap * root_above(dot(n, n))
         ends = [Plane(time, n, span.gap(n, time) - kept, False) for time in (a, b)]
         if min(end.gap for end in ends) > 0 and span.joins(ends[0], ends[1]):
             return True
         # Try a normal that both bodies carry along.
         n = self.normal(letter, nodes, span, (a, a))
-        gap = span.gap(n, a) - span.min_gap * root_above(dot(n, n))
+        gap = span.gap(n, a) - span.core_gap * root_above(dot(n, n))
         return gap > span.carried(Plane(a, n, gap, False), b)
 
     def normal(
@@ -2683,7 +2978,7 @@ class Cover:
             corners = self.parts[k].corners[facet]
             return way(k, minus(corners[(j + 1) % 3], corners[j]))
 
-        middles = [spins[k].of([self.parts[k].middle(nodes[k])]) for k in (0, 1)]
+        middles = [spins[k].with_points([self.parts[k].middle(nodes[k])]) for k in (0, 1)]
         apart = both(lambda time: minus(middles[1].at(0, time), middles[0].at(0, time)))
         if letter == "m":
             n = apart
@@ -2699,7 +2994,7 @@ class Cover:
         else:
             raise NoProofError(f"unknown letter {letter!r} of a cover")
         x, y, z = (Fraction(float(v)) for v in n)
-        return (-x, -y, -z) if dot((x, y, z), apart) < 0 else (x, y, z)
+        return negative((x, y, z)) if dot((x, y, z), apart) < 0 else (x, y, z)
 
 
 def certain(x: Vector, y: Vector, z: Vector, off: Fraction) -> int:
@@ -2727,165 +3022,85 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
         whole(k, len(side.corners))
         for k, side in zip(listed(meeting["triangles"]), parts, strict=True)
     ]
-    spins = [
-        spin.of(list(side.corners[k]))
-        for spin, side, k in zip((span.moving, span.fixed), parts, numbers, strict=True)
-    ]
-    f, g = (tuple(spin.at(k, time) for k in range(3)) for spin in spins)
-    size = max(abs(x) for v in (*f, *g) for x in v) + spins[0].reach + spins[1].reach
+    spins = (span.moving, span.fixed)
+    own, other = (side.corners[k] for side, k in zip(parts, numbers, strict=True))
+    f, g = spins[0].facets([own], time)[0], spins[1].facets([other], time)[0]
+    size = max(abs(x) for v in (*f, *g) for x in v)
+    size += spins[0].with_points(list(own)).reach + spins[1].with_points(list(other)).reach
     off = size * _SURE
     kind, claim = one_of(meeting["met"], "crossing", "near", "inside", "contained")
-    if kind == "crossing" and span.min_gap == 0:
+    if kind == "crossing" and span.core_gap == 0:
         fields(claim, "moving edge")
-        own, other = (f, g) if truth(claim["moving"]) else (g, f)
+        piercing, pierced = (f, g) if truth(claim["moving"]) else (g, f)
         k = whole(claim["edge"], 3)
-        if not pierces(own[k], own[(k + 1) % 3], (other[0], other[1], other[2]), off):
+        if not pierces(piercing[k], piercing[(k + 1) % 3], pierced, off):
             raise RefusedError("the edge does not pass through the facet")
-    elif kind == "near" and span.min_gap > 0:
+    elif kind == "near" and span.core_gap > 0:
         fields(claim, "weights")
         p, q = (
             mean(side, weights)
             for side, weights in zip((f, g), listed(claim["weights"], 2), strict=True)
         )
-        between = minus(q, p)
-        if not above(span.min_gap - 4 * off, dot(between, between)):
-            raise RefusedError(f"the points are not as near as {float(span.min_gap)!r}")
-    elif kind == "inside" and span.min_gap == 0:
+        if not is_within(p, q, span.core_gap - 4 * off):
+            raise RefusedError(f"the points are not as near as {float(span.core_gap)!r}")
+    elif kind == "inside" and span.core_gap == 0:
         at = bounded_vector(fields(claim, "point")["point"], "the point")
         if not (parts[0].closed and parts[1].closed):
             raise RefusedError("open surfaces have no interior")
-        moving = span.moving.of([v for triangle in parts[0].closed for v in triangle])
-        there = span.fixed.of([at]).at(0, time)
-        corners = iter([moving.at(k, time) for k in range(3 * len(parts[0].closed))])
-        if not is_around(list(zip(corners, corners, corners, strict=True)), there, 4 * off):
+        there = span.fixed.with_points([at]).at(0, time)
+        if not is_around(span.moving.facets(parts[0].closed, time), there, 4 * off):
             raise RefusedError("the point is not inside the moving solid")
         if not is_around(parts[1].closed, at, Fraction()):
             raise RefusedError("the point is not inside the fixed solid")
-    elif kind == "contained" and span.min_gap == 0:
+    elif kind == "contained" and span.core_gap == 0:
         fields(claim, "moving weights")
         which = 1 if truth(claim["moving"]) else 0
         closed = parts[which].closed
         if not closed:
             raise RefusedError("open surfaces have no interior")
-        turning = (span.moving, span.fixed)[which]
-        turned = turning.of([v for triangle in closed for v in triangle])
-        corners = iter([turned.at(k, time) for k in range(3 * len(closed))])
-        around = list(zip(corners, corners, corners, strict=True))
-        if not is_around(around, mean((f, g)[1 - which], claim["weights"]), 4 * off):
+        point = mean((f, g)[1 - which], claim["weights"])
+        if not is_around(spins[which].facets(closed, time), point, 4 * off):
             raise RefusedError("the point of the facet is not inside the other solid")
     else:
         raise RefusedError(f"{kind!r} does not prove that the solids meet")
 
 
-def is_around(facets: list[Triangle], at: Vector, off: Fraction) -> bool:
-    """Checks whether a closed surface surrounds a point at more than a distance."""
-
-    def edge(u: Vector, v: Vector) -> Vector:
-        way = minus(v, u)
-        return minus(u, scaled(way, dot(u, way) / dot(way, way)))
-
-    def is_away(triangle: Triangle) -> bool:
-        """Checks the distance with a plane across the vector to the nearest point."""
-        a, b, c = corners = [minus(v, at) for v in triangle]
-        across_ = cross(minus(b, a), minus(c, a))
-        if not any(across_):
-            return False
-        ways = [across_, minus(_ZERO, across_), a, b, c, edge(a, b), edge(b, c), edge(c, a)]
-        heights = ((min(dot(n, v) for v in corners), dot(n, n)) for n in ways)
-        return any(low > 0 and low * low > off * off * square for low, square in heights)
-
-    return all(map(is_away, facets)) and winds(at, facets) > 0
-
-
-def winds(at: Vector, facets: list[Triangle]) -> int:
-    """Returns the winding number of a surface around a point that is not on it."""
-    for k in range(1, 60):
-        way = (Fraction(1), Fraction(k, 61), Fraction(k * k, 3721))
-        count, sure = 0, True
-        for triangle in facets:
-            a, b, c = (minus(v, at) for v in triangle)
-            volume = dot(cross(a, b), c)
-            if volume == 0:
-                # A ray that leaves the plane at the point does not meet it again.
-                normal = cross(minus(b, a), minus(c, a))
-                if any(normal) and dot(normal, way) == 0:
-                    sure = False
-                    break
-                continue
-            sides = [dot(cross(u, v), way) for u, v in ((a, b), (b, c), (c, a))]
-            if 0 in sides:
-                sure = False
-                break
-            if min(sides) < 0 < max(sides):
-                continue
-            if (volume > 0) == (sides[0] > 0):
-                count += 1 if sides[0] > 0 else -1
-        if sure:
-            return count
-    raise RefusedError("no ray decides whether a point is inside")
-
-
-def start(span: Span, parts: tuple[Parts, Parts]) -> None:
+def check_start(span: Span, parts: tuple[Parts, Parts]) -> None:
     """Checks that no shell is inside the other solid at the start, where surfaces do not meet."""
     spins = (span.moving, span.fixed)
-    placed = []
-    for spin, side in zip(spins, parts, strict=True):
-        points = spin.of([v for triangle in side.corners for v in triangle])
-        world = [points.body.at(k) for k in range(len(points.body.points))]
-        placed.append([(world[k], world[k + 1], world[k + 2]) for k in range(0, len(world), 3)])
     for own, other in ((0, 1), (1, 0)):
-        if any(winds(v, placed[other]) > 0 for v in shells(placed[own])):
+        shells_of = spins[own].facets(parts[own].corners, Fraction())
+        if is_nested(shells_of, spins[other].facets(parts[other].closed, Fraction())):
             raise RefusedError("a shell is inside the other solid at the start of the motion")
 
 
-def shells(facets: list[Triangle]) -> list[Vector]:
-    """Returns a point of each connected part of a surface."""
-    leads: dict[Vector, Vector] = {}
-
-    def root(v: Vector) -> Vector:
-        while leads.setdefault(v, v) != v:
-            # Path halving keeps the paths short.
-            leads[v] = leads[leads[v]]
-            v = leads[v]
-        return v
-
-    for a, b, c in facets:
-        leads[root(b)] = root(a)
-        leads[root(c)] = root(a)
-    return [v for v in leads if root(v) == v]
+def check_tolerance(queried: Any, claimed: Fraction, parts: tuple[Parts, Parts]) -> None:
+    """Checks that the proof has the tolerance of the query, and without one moves no facet."""
+    if bounded(claimed, MOST, "the tolerance") < 0:
+        raise NoProofError(f"a tolerance of {float(claimed)!r} is negative")
+    if queried is not None and number(queried) != claimed:
+        raise RefusedError(
+            f"the tolerance of the proof is not the query's, {float(number(queried))!r}"
+        )
+    if claimed == 0 and any(side.moved for side in parts):
+        raise RefusedError("facets are moved although the tolerance is 0")
 
 
-def open_facets(shape: Any) -> list[bool]:
-    """Returns for each facet of a body whether it belongs to an open surface."""
-    pieces = shape["rounded"]["pieces"] if "rounded" in shape else shape.get("pieces", [])
-    return [piece.get("open", False) for piece in pieces for _ in listed(piece["triangles"])]
-
-
-def has_open(shape: Any) -> bool:
-    """Checks whether a body has an open surface."""
-    return any(open_facets(shape))
-
-
-def solid_motion(file: File, movers: list[Any], asked: Any, claim: Any, report: Report) -> None:
+def solid_motion(file: File, movers: list[Any], query: Any, claim: Any, report: Report) -> None:
     """Checks the first contact of two moving solids, with facets moved inwards as in the file."""
     fields(claim, "parts proof")
     proof = fields(claim["proof"], "tolerance start spans meeting")
     shapes = [file.shapes[of["body"]] for of in movers]
-    if any(not facets for _, facets in shapes):
+    if any(shape.is_convex for shape in shapes):
         raise NoProofError("the bodies are not made of facets")
-    opens = [open_facets(file.bodies[of["body"]]) for of in movers]
-    p, q = (
-        Parts.read(points, facets, of, is_open)
-        for (points, facets), of, is_open in zip(shapes, listed(claim["parts"]), opens, strict=True)
-    )
+    p, q = (Parts.read(*of) for of in zip(shapes, listed(claim["parts"]), strict=True))
     parts = (p, q)
-    check_tolerance(asked["tolerance"], number(proof["tolerance"]), parts)
-    min_gap = asked["min_gap"]
+    check_tolerance(query["tolerance"], number(proof["tolerance"]), parts)
+    min_gap = query["min_gap"]
     if min_gap < 0:
         raise NoProofError("the minimum gap is negative")
-    swept = sum((Body.radius_of(file.bodies[of["body"]]) for of in movers), Fraction())
-    # The facets are those of the bodies without radius.
-    all_spans = spans(movers, [[_ZERO], [_ZERO]], min_gap + swept)
+    swept = shapes[0].radius + shapes[1].radius
+    all_spans = spans(movers, [[_ZERO], [_ZERO]], min_gap, swept)
     meet = "meet" if min_gap == 0 else f"are as near as {float(min_gap)!r}"
     moved = float(max(side.moved for side in parts))
     of = f"the facets, moved by at most {moved:.3g}," if moved else "the facets"
@@ -2893,7 +3108,7 @@ def solid_motion(file: File, movers: list[Any], asked: Any, claim: Any, report: 
     claimed = listed(proof["spans"])
     if proof["start"] == "assumed":
         raise RefusedError("it is not proven whether the solids overlap at the start of the motion")
-    begin = overlap_of(proof["start"], (len(shapes[0][1]), len(shapes[1][1])), "apart")
+    begin = overlap_of(proof["start"], (len(p.corners), len(q.corners)), "apart")
     if begin != "apart":
         if claimed or proof["meeting"] is not None:
             raise RefusedError("the solids overlap at the start, but the file has other claims")
@@ -2912,20 +3127,19 @@ def solid_motion(file: File, movers: list[Any], asked: Any, claim: Any, report: 
         elif claim["cover"] != "" or listed(claim["lists"]):
             raise RefusedError("a span of length 0 has entries")
         reached = until
-    open_ = any(any(of) for of in opens)
     if reached == 0:
         report.unchecked.append("that they do not overlap at the start of the motion")
         report.partly = True
     else:
-        told = "throughout the motion" if reached == 1 else f"up to the time {float(reached)!r}"
-        report.holds.append(f"{of} never {meet} {told}")
-        if open_:
+        period = "throughout the motion" if reached == 1 else f"up to the time {float(reached)!r}"
+        report.holds.append(f"{of} never {meet} {period}")
+        if any(shape.has_open_area() for shape in shapes):
             report.unchecked.append(
                 "whether one is inside the other at the start: surfaces are open"
             )
             report.partly = True
         else:
-            start(all_spans[0], parts)
+            check_start(all_spans[0], parts)
             report.holds.append("neither of them is inside the other at the start of the motion")
     meeting = proof["meeting"]
     if meeting is not None:
@@ -2939,29 +3153,17 @@ def solid_motion(file: File, movers: list[Any], asked: Any, claim: Any, report: 
         report.partly = True
 
 
-def check_tolerance(asked: Any, told: Fraction, parts: tuple[Parts, Parts]) -> None:
-    """Checks that the proof has the tolerance of the query, and without one moves no facet."""
-    if bounded(told, MOST, "the tolerance") < 0:
-        raise NoProofError(f"a tolerance of {float(told)!r} is negative")
-    if asked is not None and number(asked) != told:
-        raise RefusedError(
-            f"the tolerance of the proof is not the query's, {float(number(asked))!r}"
-        )
-    if told == 0 and any(side.moved for side in parts):
-        raise RefusedError("facets are moved although the tolerance is 0")
-
-
-def motions(file: File, claims: Any, report: Report) -> None:
+def check_motions(file: File, claims: Any, report: Report) -> None:
     """Checks the first contact among several pairs of bodies, convex or solid."""
-    placed, asked = listed(file.placement), []
+    placed, queries = listed(file.placement), []
     for of in listed(file.query):
         fields(of, "min_gap", "tolerance")
         min_gap = bounded(number(of["min_gap"]), MOST, "the gap to be kept")
-        asked.append({"min_gap": min_gap, "tolerance": of.get("tolerance")})
-    pairs = list(zip(placed, asked, listed(claims), strict=True))
+        queries.append({"min_gap": min_gap, "tolerance": of.get("tolerance")})
+    pairs = list(zip(placed, queries, listed(claims), strict=True))
     if not pairs:
         raise NoProofError("there is no pair of bodies")
-    least = min(of["min_gap"] for of in asked)
+    least = min(of["min_gap"] for of in queries)
     for number_, (movers, of, claim) in enumerate(pairs):
         for mover in listed(movers, 2):
             file.number(fields(mover, "body motion")["body"])
@@ -2971,7 +3173,7 @@ def motions(file: File, claims: Any, report: Report) -> None:
             raise NoProofError("convex pairs have different minimum gaps")
         found = Report()
         if kind == "convex":
-            motion(file, movers, of, proof, found)
+            convex_motion(file, movers, of, proof, found)
         else:
             solid_motion(file, movers, of, proof, found)
             if len(pairs) > 1 and number(proof["proof"]["tolerance"]) != 0:
@@ -2985,13 +3187,16 @@ def motions(file: File, claims: Any, report: Report) -> None:
             report.partly = True
 
 
+# Paths of joints
+# ---------------
+
 #: Maximum number of pairs of bodies named in a line.
 NAMED = 12
 #: Binary digits to which rotations are rounded; the error is negligible compared with `_SURE`.
 _KEPT = 256
 
 
-def kept(v: Vector) -> Vector:
+def rounded_down(v: Vector) -> Vector:
     x, y, z = (Fraction(math.floor(c * (1 << _KEPT)), 1 << _KEPT) for c in v)
     return x, y, z
 
@@ -3023,7 +3228,11 @@ class Field:
         x, y, z = self.columns
         return plus(self.origin, plus(scaled(x, p[0]), plus(scaled(y, p[1]), scaled(z, p[2]))))
 
-    def bends(self, p: Vector, n: Vector, dn: Vector) -> Fraction:
+    def facets(self, facets: list[Triangle]) -> list[Triangle]:
+        """Returns facets of the body in the world."""
+        return [(self.place(a), self.place(b), self.place(c)) for a, b, c in facets]
+
+    def height_curvature(self, p: Vector, n: Vector, dn: Vector) -> Fraction:
         """Returns ``n . p'' + 2 dn . p'`` for a point at its current position."""
         x, y, z = self.matrix
         second = plus(self.a, plus(scaled(x, p[0]), plus(scaled(y, p[1]), scaled(z, p[2]))))
@@ -3045,56 +3254,44 @@ class Pieces:
     facets: list[Triangle] = field(default_factory=list)
     #: The facets of closed surfaces, which have an interior.
     closed: list[Triangle] = field(default_factory=list)
+    #: Whether the body has an open surface with an area.
+    is_open: bool = False
     #: For a convex body triples of corners that form tetrahedra with its first point.
     fans: list[tuple[int, int, int]] = field(default_factory=list)
 
-    @property
-    def is_open(self) -> bool:
-        """Checks whether the body has an open surface."""
-        return len(self.closed) < len(self.facets)
-
     @classmethod
-    def read(cls, body: Body, of: Any, shape: Any) -> Pieces:
-        if body.is_convex:
-            # Any corners are valid: a point inside a tetrahedron of vertices is inside the body.
-            faces = shape["convex"]["faces"]
-            fans = [(face[0], a, b) for face in faces for a, b in pairwise(face[1:])]
-            return cls([body.points], [[]], fans=fans)
-        is_open = open_facets(shape)
+    def read(cls, shape: Shape, of: Any) -> Pieces:
+        if shape.is_convex:
+            # Any corners are valid: a point inside a tetrahedron of vertices is inside the shape.
+            fans = [(face[0], a, b) for face in shape.faces for a, b in pairwise(face[1:])]
+            return cls([shape.points], [[]], fans=fans)
         fields(of, "numbers tree")
-        numbers = [whole(k, len(body.facets)) for k in listed(of["numbers"])]
-        if sorted(numbers) != list(range(len(body.facets))):
-            raise RefusedError("the facets are not those of the body, each once")
+        numbers = facet_numbers(of["numbers"], len(shape.facets))
         facets: list[Triangle] = []
         for at in numbers:
-            a, b, c = (body.points[k] for k in body.facets[at])
+            a, b, c = (shape.points[k] for k in shape.facets[at])
             facets.append((a, b, c))
         tree = [node_of_tree(k, len(facets) + 1) for k in listed(of["tree"])]
-        count = len(tree)
-        below: list[list[int]] = [[] for _ in tree]
-        bounds: list[tuple[Vector, Vector]] = [(_ZERO, _ZERO)] * count
-        rest, open_ = len(facets), list[int]()
-        for at in reversed(range(count)):
-            if tree[at] > 0:
-                rest -= tree[at]
-                if rest < 0:
-                    raise RefusedError("the parts of the body are not its facets, each once")
-                below[at] = [count + k for k in range(rest, rest + tree[at])]
-                bounds[at] = _box([v for k in range(rest, rest + tree[at]) for v in facets[k]])
-            else:
-                if tree[at] == 0 or len(open_) < 2:
-                    raise RefusedError("the nodes do not form a tree")
-                below[at] = [open_.pop(), open_.pop()]
-                bounds[at] = _box([v for k in below[at] for v in bounds[k]])
-            open_.append(at)
-        if open_ != [0] or rest:
+        if 0 in tree:
             raise RefusedError("the nodes do not form a tree")
-        boxes = [[(x[0], y[1], z[2]) for x, y, z in product(ends, repeat=3)] for ends in bounds]
+        leaves: list[list[int]] = []
+        used = 0
+        for count in (max(k, 0) for k in tree):
+            leaves.append([len(tree) + k for k in range(used, used + count)])
+            used += count
+        if used != len(facets):
+            raise RefusedError("the parts of the body are not its facets, each once")
+        corners = [list(facet) for facet in facets]
+        children, bounds = read_tree(
+            [[v for k in leaf for v in corners[k - len(tree)]] for leaf in leaves]
+        )
+        below = [leaf or parts for leaf, parts in zip(leaves, children, strict=True)]
         return cls(
-            boxes + [list(corners) for corners in facets],
+            [box_corners(box) for box in bounds] + corners,
             below + [[] for _ in facets],
             facets,
-            [facet for k, facet in zip(numbers, facets, strict=True) if not is_open[k]],
+            [facet for k, facet in zip(numbers, facets, strict=True) if not shape.is_open[k]],
+            shape.has_open_area(),
         )
 
 
@@ -3157,7 +3354,7 @@ class Carried:
 
         for stage in self.stages:
             origin = plus(origin, turned(stage.origin.offset, axes))
-            x, y, z = (kept(turned(stage.origin.turn(e), axes)) for e in _UNITS)
+            x, y, z = (rounded_down(turned(stage.origin.turn(e), axes)) for e in _UNITS)
             axes = (x, y, z)
             if stage.kind == "fixed":
                 continue
@@ -3169,7 +3366,7 @@ class Carried:
             if stage.kind == "sliding":
                 v = plus(v, spin)
                 a = plus(a, scaled(cross(w, spin), Fraction(2)))
-                origin = kept(plus(origin, scaled(along, value)))
+                origin = rounded_down(plus(origin, scaled(along, value)))
                 continue
             # The joint moves p by spin x (p - origin); earlier joints turn this by B.
             before = plus(scaled(w, Fraction(2)), spin)
@@ -3189,7 +3386,7 @@ class Carried:
                 )
                 for e in _UNITS
             )
-            x, y, z = (kept(turned(e, axes)) for e in (x, y, z))
+            x, y, z = (rounded_down(turned(e, axes)) for e in (x, y, z))
             axes = (x, y, z)
         origin = plus(origin, turned(self.body.offset, axes))
         x, y, z = (turned(self.body.turn(e), axes) for e in _UNITS)
@@ -3258,7 +3455,7 @@ class Carried:
 
 
 @dataclass
-class Couple:
+class PiecePair:
     """Two convex pieces of bodies on chains of joints."""
 
     moving: Carried
@@ -3288,10 +3485,10 @@ class Couple:
         low = min(dot(n, q.place(v)) for v in self.other)
         return low - high - self.off() - self.left_out
 
-    def has(self, plane: Plane, row: int) -> bool:
+    def has_gap(self, plane: Plane, row: int) -> bool:
         unit(plane.normal)
         along = self.gap(plane.normal, row, plane.time)
-        return plane.gap > 0 and plane.is_left(along, self.min_gap + self.swept)
+        return plane.gap > 0 and plane.leaves(along, self.min_gap + self.swept)
 
     def joins(self, row: int, a: Plane, b: Plane) -> bool:
         """Checks whether two planes of a row prove everything between them.
@@ -3317,7 +3514,7 @@ class Couple:
             for plane in (a, b):
                 found = of.at(row, plane.time)
                 n, along = scaled(plane.normal, sign * h * h), scaled(dn, sign * h)
-                ends.append(max(found.bends(found.place(v), n, along) for v in points))
+                ends.append(max(found.height_curvature(found.place(v), n, along) for v in points))
             changes = h * h * (h * third + 3 * beside * second)
             room = 64 * _SURE * of.size * (1 + sum(of.most(row)))
             c += min(loose, (ends[0] + ends[1] + changes) / 2 + room)
@@ -3333,16 +3530,19 @@ class Couple:
         rows = sum((self.way(row) for row in range(a[0] + 1, b[0])), Fraction())
         return (1 - a[1]) * self.way(a[0]) + rows + b[1] * self.way(b[0])
 
-    def ends(self, pairs: Any, row: int, share: Fraction) -> list[tuple[Vector, Vector]]:
+    def check_contact(self, met: Any, row: int, share: Fraction) -> None:
+        """Checks that the pieces overlap at a place, or are within the minimum gap."""
         p, q = (of.at(row, share) for of in (self.moving, self.fixed))
         own, other = self.own, self.other
-        return [
-            (
-                p.place(own[whole(pair["moving"], len(own))]),
-                q.place(other[whole(pair["fixed"], len(other))]),
-            )
-            for pair in (fields(each, "moving fixed") for each in listed(pairs))
-        ]
+
+        def ends(pairs: Any) -> list[tuple[Vector, Vector]]:
+            named = vertex_pairs(pairs, len(own), len(other))
+            return [(p.place(own[i]), q.place(other[j])) for i, j in named]
+
+        def gap(n: Vector) -> Fraction:
+            return self.gap(n, row, share)
+
+        check_contact(met, ends, gap, (self.off(), self.rounded()), self.min_gap, self.swept)
 
 
 def settled(row: int, share: Fraction) -> tuple[int, Fraction]:
@@ -3350,8 +3550,69 @@ def settled(row: int, share: Fraction) -> tuple[int, Fraction]:
     return (row + 1, Fraction()) if share == 1 else (row, share)
 
 
+def place_of(of: Any, last: int) -> tuple[int, Fraction]:
+    """Returns a place on a path: a row, and a fraction from 0 to 1 of the step to the next row."""
+    fields(of, "row share")
+    row, share = whole(of["row"], last + 1), number(of["share"])
+    if not 0 <= share <= 1 or (row == last and share):
+        raise RefusedError(f"a fraction of {float(share)!r} after row {row} is not on the path")
+    return row, share
+
+
+def is_inside_fans(at: Vector, corners: list[Vector], fans: list[tuple[int, int, int]]) -> bool:
+    """Checks whether a point is inside a tetrahedron of the first corner and three others."""
+    ways = [minus(corner, at) for corner in corners]
+    return any(encloses([ways[0], ways[a], ways[b], ways[c]]) for a, b, c in fans)
+
+
+def has_planes(steps: Any) -> bool:
+    """Checks whether a valid cover proves that two pieces do not meet where it begins."""
+    kinds = [one_of(step, "planes", "parts") for step in listed(steps)]
+    return any(
+        bool(claim)
+        if kind == "planes"
+        else all(has_planes(cover["steps"]) for cover in listed(claim["covers"]))
+        for kind, claim in kinds
+    )
+
+
+def planes_of_path(
+    pair: PiecePair, stretches: Any, here: tuple[int, Fraction], last: int
+) -> tuple[int, Fraction]:
+    """Returns up to which place planes prove that two pieces do not meet, starting from a place."""
+    before = None
+    for stretch in stretches:
+        row = whole(fields(stretch, "row planes")["row"], last + 1)
+        planes = [Plane.read(plane) for plane in listed(stretch["planes"])]
+        if not planes or any(plane.alone for plane in planes):
+            raise RefusedError(f"the planes of row {row} are out of order")
+        times = [plane.time for plane in planes]
+        if sorted(times) != times or times[0] < 0 or times[-1] > 1:
+            raise RefusedError(f"the planes of row {row} are out of order")
+        if settled(row, times[-1]) > (last, Fraction()):
+            raise RefusedError("a plane is beyond the end of the path")
+        if before is None:
+            if settled(row, times[0]) != here:
+                raise RefusedError(f"the planes of row {row} do not begin where others end")
+        else:
+            (place, gap), next_ = before, (row, times[0])
+            far = place <= next_ and pair.between(place, next_) < gap + planes[0].along
+            if place > next_ or (settled(*place) != settled(*next_) and not far):
+                raise RefusedError(f"the path before row {row} is not proven")
+        for k, plane in enumerate(planes):
+            if not pair.has_gap(plane, row):
+                gap_ = float(plane.gap)
+                raise RefusedError(f"a plane of row {row} does not leave a gap of {gap_!r}")
+            if k and not pair.joins(row, planes[k - 1], plane):
+                raise RefusedError(f"two planes of row {row} do not prove the path between them")
+        before = ((row, times[-1]), planes[-1].along)
+    if before is not None:
+        here = settled(*before[0])
+    return here
+
+
 @dataclass
-class Walk:
+class PathPair:
     """Two bodies along a path, with the tree of pieces of their cover."""
 
     moving: Carried
@@ -3363,9 +3624,9 @@ class Walk:
     #: The last row.
     last: int
 
-    def of(self, numbers: tuple[int, int]) -> Couple:
+    def piece_pair(self, numbers: tuple[int, int]) -> PiecePair:
         own, other = (side.points[k] for side, k in zip(self.pieces, numbers, strict=True))
-        return Couple(self.moving, self.fixed, self.min_gap, own, other, self.left_out)
+        return PiecePair(self.moving, self.fixed, self.min_gap, own, other, self.left_out)
 
     def cover(
         self,
@@ -3375,11 +3636,11 @@ class Walk:
         until: tuple[int, Fraction],
     ) -> tuple[int, Fraction]:
         """Returns the place, at most ``until``, up to which a cover proves no contact."""
-        couple = self.of(numbers)
+        both = self.piece_pair(numbers)
         for step in listed(steps):
             kind, claim = one_of(step, "planes", "parts")
             if kind == "planes":
-                here = planes_of_path(couple, claim, here, self.last)
+                here = planes_of_path(both, claim, here, self.last)
                 continue
             which = whole(fields(claim, "which until covers")["which"], 2)
             place = settled(*place_of(claim["until"], self.last))
@@ -3403,91 +3664,39 @@ class Walk:
         all corners of a shell are inside or none. With ``everywhere`` all corners are tested.
         """
         fields_ = [of.at(0, Fraction()) for of in (self.moving, self.fixed)]
-
-        def placed(k: int, facets: list[Triangle]) -> list[Triangle]:
-            at = fields_[k]
-            return [(at.place(a), at.place(b), at.place(c)) for a, b, c in facets]
-
         for own, other in ((0, 1), (1, 0)):
             mine, there = self.pieces[own], self.pieces[other]
             first = fields_[own].place(mine.points[0][0])
-            points = shells(placed(own, mine.facets)) if mine.facets else [first]
+            points = shells(fields_[own].facets(mine.facets)) if mine.facets else [first]
             if everywhere:
                 corners = [v for facet in mine.facets for v in facet] or mine.points[0]
                 points = [fields_[own].place(v) for v in corners]
             if there.facets:
-                around = placed(other, there.closed)
+                around = fields_[other].facets(there.closed)
                 inside = any(winds(v, around) > 0 for v in points)
             else:
                 corners = [fields_[other].place(v) for v in there.points[0]]
-                inside = any(is_within(v, corners, there.fans) for v in points if mine.facets)
+                inside = any(is_inside_fans(v, corners, there.fans) for v in points if mine.facets)
             if inside:
                 return True
         return False
 
 
-def is_within(at: Vector, corners: list[Vector], fans: list[tuple[int, int, int]]) -> bool:
-    """Checks whether a point is inside a tetrahedron of the first corner and three others."""
-    ways = [minus(corner, at) for corner in corners]
-    return any(encloses([ways[0], ways[a], ways[b], ways[c]]) for a, b, c in fans)
+def is_in_both(walk: PathPair, point: Vector, row: int, share: Fraction) -> None:
+    """Checks that a point in the second body's frame is inside both solids at a place."""
+    own, other = walk.pieces
+    if walk.min_gap or not (own.closed and other.closed):
+        raise RefusedError(
+            "a point proves nothing for open surfaces, convex bodies, or a minimum gap"
+        )
+    p, q = (of.at(row, share) for of in (walk.moving, walk.fixed))
+    if not is_around(p.facets(own.closed), q.place(point), 4 * walk.piece_pair((0, 0)).off()):
+        raise RefusedError("the point is not inside the first solid")
+    if not is_around(other.closed, point, Fraction()):
+        raise RefusedError("the point is not inside the second solid")
 
 
-def place_of(of: Any, last: int) -> tuple[int, Fraction]:
-    """Returns a place on a path: a row, and a fraction from 0 to 1 of the step to the next row."""
-    fields(of, "row share")
-    row, share = whole(of["row"], last + 1), number(of["share"])
-    if not 0 <= share <= 1 or (row == last and share):
-        raise RefusedError(f"a fraction of {float(share)!r} after row {row} is not on the path")
-    return row, share
-
-
-def has_planes(steps: Any) -> bool:
-    """Checks whether a valid cover proves that two pieces do not meet where it begins."""
-    kinds = [one_of(step, "planes", "parts") for step in listed(steps)]
-    return any(
-        bool(claim)
-        if kind == "planes"
-        else all(has_planes(cover["steps"]) for cover in listed(claim["covers"]))
-        for kind, claim in kinds
-    )
-
-
-def planes_of_path(
-    couple: Couple, stretches: Any, here: tuple[int, Fraction], last: int
-) -> tuple[int, Fraction]:
-    """Returns up to which place planes prove that two pieces do not meet, starting from a place."""
-    before = None
-    for stretch in stretches:
-        row = whole(fields(stretch, "row planes")["row"], last + 1)
-        planes = [Plane.read(plane) for plane in listed(stretch["planes"])]
-        if not planes or any(plane.alone for plane in planes):
-            raise RefusedError(f"the planes of row {row} are out of order")
-        times = [plane.time for plane in planes]
-        if sorted(times) != times or times[0] < 0 or times[-1] > 1:
-            raise RefusedError(f"the planes of row {row} are out of order")
-        if settled(row, times[-1]) > (last, Fraction()):
-            raise RefusedError("a plane is beyond the end of the path")
-        if before is None:
-            if settled(row, times[0]) != here:
-                raise RefusedError(f"the planes of row {row} do not begin where others end")
-        else:
-            (place, gap), next_ = before, (row, times[0])
-            far = place <= next_ and couple.between(place, next_) < gap + planes[0].along
-            if place > next_ or (settled(*place) != settled(*next_) and not far):
-                raise RefusedError(f"the path before row {row} is not proven")
-        for k, plane in enumerate(planes):
-            if not couple.has(plane, row):
-                gap_ = float(plane.gap)
-                raise RefusedError(f"a plane of row {row} does not leave a gap of {gap_!r}")
-            if k and not couple.joins(row, planes[k - 1], plane):
-                raise RefusedError(f"two planes of row {row} do not prove the path between them")
-        before = ((row, times[-1]), planes[-1].along)
-    if before is not None:
-        here = settled(*before[0])
-    return here
-
-
-def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
+def pieces_meet(walk: PathPair, how: Any, row: int, share: Fraction) -> None:
     """Checks that two pieces, whole bodies or facets, meet at a place."""
     kind, claim = one_of(how, "pieces", "point")
     fields(claim, "pieces met" if kind == "pieces" else "pieces point")
@@ -3500,56 +3709,20 @@ def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
     if kind == "point":
         is_in_both(walk, bounded_vector(claim["point"], "the point"), row, share)
         return
-    couple, refused = walk.of((i, j)), RefusedError("the pieces have no points")
-    # The file does not say which corner of a facet is the first one.
-    own = begun(couple.own, walk.pieces[0])
-    for first, second in product(own, begun(couple.other, walk.pieces[1])):
+    pair, refused = walk.piece_pair((i, j)), RefusedError("the pieces have no points")
+    # The file does not define which corner of a facet is the first one.
+    orders = [
+        cyclic_orders(points) if side.facets else [points]
+        for points, side in zip((pair.own, pair.other), walk.pieces, strict=True)
+    ]
+    for first, second in product(*orders):
         try:
-            do_meet(replace(couple, own=first, other=second), claim["met"], row, share)
+            replace(pair, own=first, other=second).check_contact(claim["met"], row, share)
         except RefusedError as error:
             refused = error
         else:
             return
     raise refused
-
-
-def is_in_both(walk: Walk, point: Vector, row: int, share: Fraction) -> None:
-    """Checks that a point in the second body's frame is inside both solids at a place."""
-    own, other = walk.pieces
-    if walk.min_gap or not (own.closed and other.closed):
-        raise RefusedError(
-            "a point proves nothing for open surfaces, convex bodies, or a minimum gap"
-        )
-    p, q = (of.at(row, share) for of in (walk.moving, walk.fixed))
-    placed = [(p.place(a), p.place(b), p.place(c)) for a, b, c in own.closed]
-    if not is_around(placed, q.place(point), 4 * walk.of((0, 0)).off()):
-        raise RefusedError("the point is not inside the first solid")
-    if not is_around(other.closed, point, Fraction()):
-        raise RefusedError("the point is not inside the second solid")
-
-
-def do_meet(couple: Couple, met: Any, row: int, share: Fraction) -> None:
-    """Checks that two convex pieces overlap at a place, or are within the minimum gap."""
-    kind, claim = one_of(met, "deep", "near")
-    min_gap, off = couple.min_gap, (couple.off(), couple.rounded())
-
-    def ends(pairs: Any) -> list[tuple[Vector, Vector]]:
-        return couple.ends(pairs, row, share)
-
-    def least(n: Vector) -> Fraction:
-        return couple.gap(n, row, share)
-
-    if kind == "deep":
-        is_deep(claim, ends, least, off, Fraction(), couple.swept)
-    elif kind == "near" and min_gap > 0:
-        is_near(claim, ends, off, min_gap, couple.swept)
-    else:
-        raise RefusedError(f"{kind!r} does not prove that the bodies meet")
-
-
-def begun(points: Sequence[Vector], side: Pieces) -> list[Sequence[Vector]]:
-    """Returns the cyclic orders of a facet's corners; a convex body keeps its order."""
-    return [[*points[k:], *points[:k]] for k in range(3)] if side.facets else [points]
 
 
 @dataclass
@@ -3583,7 +3756,7 @@ class Robot:
             fields(frame, "parent origin joint")
             parent, joint = frame["parent"], frame["joint"]
             parents.append(None if parent is None else whole(parent, k))
-            origin = Body.placed([_ZERO], [], frame["origin"])
+            origin = Body.placed(Shape([_ZERO]), frame["origin"])
             if joint == "fixed":
                 frames.append(Stage(origin, "fixed", _UNITS[0], 0))
                 continue
@@ -3599,9 +3772,9 @@ class Robot:
                 for row in rows:
                     bounded(row[stage.column], most, "the value of a joint")
         robot = cls(frames, parents, rows, times, [], [], [], [], [])
-        parts = listed(claim["parts"], len(file.bodies))
-        for k, (shape, own) in enumerate(zip(file.bodies, parts, strict=True)):
-            if ("convex" in shape) == (own is not None):
+        parts = listed(claim["parts"], len(file.shapes))
+        for k, (shape, own) in enumerate(zip(file.shapes, parts, strict=True)):
+            if shape.is_convex == (own is not None):
                 raise NoProofError(
                     f"body {k}: parts are given for a convex body, or missing for a solid"
                 )
@@ -3626,10 +3799,8 @@ class Robot:
         self.bodies.append((way[::-1], body))
         if self.reach(len(self.bodies) - 1) > MOST:
             raise NoProofError(f"{name!r} can be farther than 2^200 from the root of its frames")
-        shape = file.bodies[of["body"]]
-        self.pieces.append(Pieces.read(body, parts[of["body"]], shape))
-        error = shape["convex"]["hull_error"] if body.is_convex else 0
-        self.left_out_of.append(number(error))
+        self.pieces.append(Pieces.read(body.shape, parts[of["body"]]))
+        self.left_out_of.append(body.shape.hull_error)
 
     def reach(self, k: int) -> float:
         """Returns an upper bound of the distance of a body from the root of its frames, rounded."""
@@ -3650,7 +3821,7 @@ class Robot:
             reach *= 1 + 1e-9
         return reach
 
-    def walk(self, pair: tuple[int, int], min_gap: Fraction) -> Walk:
+    def walk(self, pair: tuple[int, int], min_gap: Fraction) -> PathPair:
         """Returns two bodies relative to the last frame that carries both."""
         (way_p, p), (way_q, q) = (self.bodies[k] for k in pair)
         while way_p and way_q and way_p[0] == way_q[0]:
@@ -3661,13 +3832,13 @@ class Robot:
         )
         pieces = self.pieces[pair[0]], self.pieces[pair[1]]
         left_out = sum((self.left_out_of[k] for k in pair), Fraction())
-        return Walk(own, other, min_gap, pieces, left_out, len(self.rows) - 1)
+        return PathPair(own, other, min_gap, pieces, left_out, len(self.rows) - 1)
 
     def time(self, row: int, share: Fraction) -> Fraction:
         times = self.times
         return times[row] + (share * (times[row + 1] - times[row]) if share else 0)
 
-    def told(self, pair: tuple[int, int]) -> str:
+    def names_of(self, pair: tuple[int, int]) -> str:
         """Returns the names of two bodies."""
         return " and ".join(repr(self.names[k]) for k in pair)
 
@@ -3676,13 +3847,13 @@ class Robot:
         pairs = {frozenset(pair) for pair in self.pairs}
         moved_by = [[k for k in way if self.frames[k].kind != "fixed"] for way, _ in self.bodies]
         return [
-            self.told((i, j))
+            self.names_of((i, j))
             for i, j in combinations(range(len(self.bodies)), 2)
             if moved_by[i] != moved_by[j] and frozenset((i, j)) not in pairs
         ]
 
 
-def path(file: File, statement: Any, report: Report) -> None:
+def check_path(file: File, statement: Any, report: Report) -> None:
     """Checks the first contact among pairs of bodies on chains of joints."""
     fields(file.query, "path", "min_gap")
     min_gap = bounded(gap_to_keep(file.query), MOST, "the gap to be kept")
@@ -3713,9 +3884,10 @@ def path(file: File, statement: Any, report: Report) -> None:
         report.unchecked.append(f"pairs that the query leaves out: {', '.join(left_out)}")
     # On a path with one row the planes are at its only place.
     if lower > robot.times[0] or (lower == robot.times[-1] and begins):
-        told = ", ".join(map(robot.told, pairs[:NAMED])) + (", ..." if len(pairs) > NAMED else "")
+        named = ", ".join(map(robot.names_of, pairs[:NAMED]))
+        named += ", ..." if len(pairs) > NAMED else ""
         report.holds.append(
-            f"of {len(pairs)} pairs of bodies none {meet} up to the time {float(lower)!r}: {told}"
+            f"of {len(pairs)} pairs of bodies none {meet} up to the time {float(lower)!r}: {named}"
         )
     if open_:
         report.unchecked.append(
@@ -3738,7 +3910,77 @@ def path(file: File, statement: Any, report: Report) -> None:
     else:
         pieces_meet(found, how, *place)
     by = f"by the time {float(upper)!r}" if upper is not None else "on the path"
-    report.holds.append(f"{robot.told(pairs[which])} {meet} {by}")
+    report.holds.append(f"{robot.names_of(pairs[which])} {meet} {by}")
+
+
+# The whole file
+# --------------
+
+#: The checks of claims about two bodies at fixed poses.
+PLACED = {
+    "distance": distance,
+    "depth": depth,
+    "solid_distance": solid_distance,
+    "free_directions": free_directions,
+}
+#: The kind of query of each kind of claim.
+CLAIMS = {
+    **dict.fromkeys(("contacts", "separation", "clearance"), "cast"),
+    **dict.fromkeys(PLACED, "pair"),
+    **dict.fromkeys(("nearest", "within", "scene_clearance"), "scene"),
+    "motions": "motions",
+    "path": "path",
+}
+
+
+def check_cast(file: File, kind: str, claim: Any, report: Report) -> None:
+    """Checks a claim about two bodies along a direction."""
+    moving, fixed = file.two(solids=kind == "clearance")
+    fields(file.query, "direction", "min_gap")
+    d, min_gap = place(file.query["direction"]), gap_to_keep(file.query)
+    if not any(d):
+        raise NoProofError("the direction is zero")
+    if kind == "separation":
+        separation(moving, fixed, d, claim, report, min_gap)
+    elif kind == "clearance":
+        clearance(moving, fixed, d, claim, report, min_gap)
+    else:
+        contacts(moving, fixed, d, claim, report, min_gap)
+
+
+def check_pair(file: File, kind: str, claim: Any, report: Report) -> None:
+    """Checks a claim about two bodies at fixed poses."""
+    moving, fixed = file.two(solids=kind in ("solid_distance", "free_directions"))
+    if kind == "free_directions" and any(moving.shape.is_open + fixed.shape.is_open):
+        raise NoProofError("free directions are not claimed for open surfaces")
+    if kind == "free_directions" and radii(moving, fixed):
+        raise NoProofError("free directions are not claimed for rounded solids")
+    PLACED[kind](moving, fixed, claim, report)
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Builds an object, and rejects repeated names."""
+    fields = dict(pairs)
+    if len(fields) < len(pairs):
+        raise NoProofError("a name occurs twice in an object")
+    return fields
+
+
+def _integer(text: str) -> int | float:
+    """Converts an integer; -0 becomes a floating-point number."""
+    return -0.0 if text == "-0" else int(text)
+
+
+def _finite(text: str) -> float:
+    """Converts a number, and rejects numbers that exceed any double."""
+    value = float(text)
+    if math.isinf(value):
+        raise NoProofError(f"{text:.40} is larger than any double")
+    return value
+
+
+def _no_number(text: str) -> Any:
+    raise NoProofError(f"{text} is not a number")
 
 
 def check(text: str) -> Report:
@@ -3765,137 +4007,31 @@ def check(text: str) -> Report:
             raise NoProofError(f"the version is {content.get('version')!r}, not {VERSION}")
         fields(content, "format version bodies placement query statement")
         file, report = File.read(content), Report()
-        rounded = [
-            shape for shape in file.bodies if "convex" not in shape and Body.radius_of(shape)
-        ]
-        if file.asked not in ("cast", "pair", "motions") and rounded:
-            report.unchecked.append(f"the {file.asked}, whose solids are rounded")
-            return report
-        for k, body in enumerate(file.bodies):
-            check_faces(report, k, body.get("convex"))
+        for k, shape in enumerate(file.shapes):
+            if shape.is_convex and not are_own_faces(shape.points, shape.faces):
+                report.partly = True
+                report.unchecked.append(f"the faces of body {k}: it is the hull of its vertices")
         kind, claim = one_of(content["statement"], *CLAIMS)
-        if CLAIMS[kind] != file.asked:
-            raise NoProofError(f"the claim {kind!r} does not belong to the query {file.asked!r}")
-        if file.asked == "cast":
-            along(file, kind, claim, report)
-        elif file.asked == "pair":
-            pair(file, kind, claim, report)
-        elif file.asked == "scene":
+        if CLAIMS[kind] != file.question:
+            raise NoProofError(f"the claim {kind!r} does not belong to the query {file.question!r}")
+        if file.question == "cast":
+            check_cast(file, kind, claim, report)
+        elif file.question == "pair":
+            check_pair(file, kind, claim, report)
+        elif file.question == "scene":
             Scene(file, report).check(kind, claim)
-        elif file.asked == "motions":
-            motions(file, claim, report)
+        elif file.question == "motions":
+            check_motions(file, claim, report)
         else:
-            path(file, claim, report)
+            check_path(file, claim, report)
+        if report.has_cover:
+            report.partly = True
+            report.unchecked.append("the covers: the distances were checked without them")
     except (*_MALFORMED, RecursionError) as error:
         if isinstance(error, NoProofError):
             raise
         raise NoProofError(f"{type(error).__name__}: {error}") from error
     return report
-
-
-def check_faces(report: Report, body: int, content: Any) -> None:
-    """Reports the faces of a body as unchecked, unless they are clearly those of its hull."""
-    if content is None or are_own_faces([vector(v) for v in listed(content["vertices"])], content):
-        return
-    report.partly = True
-    report.unchecked.append(f"the faces of body {body}: it is the hull of its vertices")
-
-
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Builds an object, and rejects repeated names."""
-    fields = dict(pairs)
-    if len(fields) < len(pairs):
-        raise NoProofError("a name occurs twice in an object")
-    return fields
-
-
-#: The checks of claims about two bodies at fixed poses.
-PLACED = {
-    "distance": distance,
-    "depth": depth,
-    "solid_distance": solid_distance,
-    "free_directions": free_directions,
-}
-#: The kind of query of each kind of claim.
-CLAIMS = {
-    **dict.fromkeys(("contacts", "separation", "clearance"), "cast"),
-    **dict.fromkeys(PLACED, "pair"),
-    **dict.fromkeys(("nearest", "within", "scene_clearance"), "scene"),
-    "motions": "motions",
-    "path": "path",
-}
-
-
-def _integer(text: str) -> int | float:
-    """Converts an integer; -0 becomes a floating-point number."""
-    return -0.0 if text == "-0" else int(text)
-
-
-def _finite(text: str) -> float:
-    """Converts a number, and rejects numbers that exceed any double."""
-    value = float(text)
-    if math.isinf(value):
-        raise NoProofError(f"{text:.40} is larger than any double")
-    return value
-
-
-def _no_number(text: str) -> Any:
-    raise NoProofError(f"{text} is not a number")
-
-
-def gap_to_keep(of: Any) -> Fraction:
-    """Returns the minimum gap of a query; 0 if there is none."""
-    min_gap = number(of.get("min_gap", 0.0))
-    if not 0 <= min_gap <= _RANGE[1]:
-        raise NoProofError(
-            f"a minimum gap of {float(min_gap)!r} is out of range; accepted: 0 to 2^200"
-        )
-    return min_gap
-
-
-def pair(file: File, kind: str, claim: Any, report: Report) -> None:
-    """Checks a claim about two bodies at fixed poses."""
-    moving, fixed = file.two(solids=kind in ("solid_distance", "free_directions"))
-    if kind == "free_directions" and any(
-        has_open(file.bodies[of["body"]]) for of in file.placement
-    ):
-        raise NoProofError("free directions are not claimed for open surfaces")
-    if kind == "free_directions" and radii(moving, fixed):
-        raise NoProofError("free directions are not claimed for rounded solids")
-    PLACED[kind](moving, fixed, claim, report)
-
-
-def along(file: File, kind: str, claim: Any, report: Report) -> None:
-    """Checks a claim about two bodies along a direction."""
-    moving, fixed = file.two(solids=kind == "clearance")
-    fields(file.query, "direction", "min_gap")
-    d, min_gap = place(file.query["direction"]), gap_to_keep(file.query)
-    if not any(d):
-        raise NoProofError("the direction is zero")
-    if kind == "separation":
-        separation(moving, fixed, d, claim, report, min_gap)
-    elif kind == "clearance":
-        clearance(moving, fixed, d, claim, report, min_gap)
-    else:
-        contacts(moving, fixed, d, claim, report, min_gap)
-
-
-def contacts(
-    moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, min_gap: Fraction
-) -> None:
-    """Checks both ends of the range of translations at which two convex bodies meet."""
-    claim = fields(claim, "", "slide first last")
-    claim = {name: part for name, part in claim.items() if part is not None}
-    if not {"first", "last"} & set(claim):
-        raise NoProofError("no contact is claimed")
-    if "slide" in claim:
-        slide(moving, fixed, d, claim["slide"], report, min_gap)
-    if "first" in claim:
-        contact(moving, fixed, d, claim["first"], report, "along the direction", min_gap)
-    if "last" in claim:
-        back = scaled(d, Fraction(-1))
-        contact(moving, fixed, back, claim["last"], report, "against the direction", min_gap)
-    report.unchecked.append("the stated rounding, which proves nothing")
 
 
 def main(words: Sequence[str] | None = None) -> int:

@@ -121,7 +121,7 @@ fn saved_proofs_hold_in_both_checkers() {
         saved(folder, &[&[command], &bodies[..], more].concat());
         let text = answered(folder, &["verify", "proof.json"]);
         assert!(text.starts_with(&format!("holds: {said}")), "{text}");
-        // The checker in fractions does not check lower bounds of distances of parts.
+        // The checker in fractions does not use the covers of parts.
         let is_part = bodies == &PARTS && said.contains("between");
         checked_in_fractions(folder, if is_part { 7 } else { 0 });
     }

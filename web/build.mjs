@@ -31,8 +31,8 @@ const out = join(here, "dist");
 
 /** The modules of the page by the features of `colltrans-wasm`. Fewer features give smaller modules. */
 const MODULES = {
-  "": ["page", "page_distance", "page_found", "page_picture"],
-  motion: ["page_motion"],
+  "": ["page", "page_found", "page_picture"],
+  "min-gap": ["page_distance", "page_motion", "page_round"],
   assembly: ["page_assembly"],
 };
 

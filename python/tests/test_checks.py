@@ -154,7 +154,7 @@ def test_tests_of_research_compile_nothing_of_the_product_again() -> None:
 
 
 def test_the_native_page_is_compiled_once_for_its_own_tests_and_these() -> None:
-    page = ["--manifest-path=crates/colltrans-wasm/Cargo.toml", "--features=assembly,motion"]
+    page = ["--manifest-path=crates/colltrans-wasm/Cargo.toml", "--features=assembly,min-gap"]
     tests, native = compile_units("test", *page), compile_units("build", "--example=native", *page)
     assert [unit for unit in native if unit not in tests] == []
 

@@ -34,6 +34,7 @@ interface Answers {
 /** A body as it is drawn, in its own frame. */
 export interface Body {
   facts: PageBody;
+  /** The vertices of the body; those of the surface of a rounded body follow. */
   vertices: Float64Array;
   triangles: Uint32Array;
   /** The face of each triangle. */
@@ -124,7 +125,7 @@ export class Engine {
   private next = 1;
 
   /** Starts the worker at once, so that the library loads while the page is still being built. */
-  constructor(private readonly library: "colltrans" | "colltrans_assembly" | "colltrans_distance" | "colltrans_found" | "colltrans_motion" | "colltrans_picture" = "colltrans") {
+  constructor(readonly library: "colltrans" | "colltrans_assembly" | "colltrans_distance" | "colltrans_found" | "colltrans_motion" | "colltrans_picture" | "colltrans_round") {
     this.running();
   }
 
@@ -143,15 +144,15 @@ export class Engine {
 
   async load(slot: Slot, name: string, take: Take, file?: ArrayBuffer): Promise<Body> {
     const { facts, numbers } = await this.ask({ do: "load", slot, name, take }, file);
-    const { body, edges } = facts;
+    const { body, points, triangles, edges } = facts;
     let at = 0;
     const take64 = (count: number) => new Float64Array(numbers, (at += 8 * count) - 8 * count, count);
     const take32 = (count: number) => new Uint32Array(numbers, (at += 4 * count) - 4 * count, count);
     return {
       facts: body,
-      vertices: take64(3 * body.vertices),
-      triangles: take32(3 * body.triangles),
-      faces: take32(body.triangles),
+      vertices: take64(3 * points),
+      triangles: take32(3 * triangles),
+      faces: take32(triangles),
       edges: take32(2 * edges),
     };
   }

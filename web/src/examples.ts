@@ -4,6 +4,7 @@ import type { Slot, Take } from "./engine";
 import { AT_HOME, type Pose, type Vec } from "./math";
 
 export interface Part {
+  /** A file, or the name of a sphere, capsule or box. */
   file: string;
   take: Take;
 }
@@ -38,6 +39,14 @@ export const EXAMPLES: Record<string, Example> = {
     movingPose: at(0, 0, 7),
     fixedPose: AT_HOME,
     direction: [0, 0, -1],
+  },
+  ball: {
+    title: "A ball onto a bracket",
+    moving: convex("sphere:1.5"),
+    fixed: convex("bracket.obj"),
+    movingPose: at(6, 1, 9),
+    fixedPose: AT_HOME,
+    direction: [-0.3, 0.1, -1],
   },
   ellipsoids: {
     title: "Two ellipsoids",

@@ -128,8 +128,8 @@ export class Found {
   private bodies(): [Drawn, Drawn] | undefined {
     const { view } = this.around;
     const [moving, fixed] = [view.bodyOf("moving"), view.bodyOf("fixed")];
-    const convex = moving?.body.facts.kind === "convex" && fixed?.body.facts.kind === "convex";
-    return convex ? [moving!, fixed!] : undefined;
+    const sections = [moving, fixed].every((drawn) => drawn?.body.facts.kind === "convex" && !drawn.body.facts.radius);
+    return sections ? [moving!, fixed!] : undefined;
   }
 
   /** Shows one of the examples. */
@@ -158,7 +158,7 @@ export class Found {
     const { moving, fixed } = this.around.sources();
     if (!bodies || !moving || !fixed) {
       if (!this.around.view.bodyOf("moving") || !this.around.view.bodyOf("fixed")) this.say("No search", "A body is missing: give it in the first tab.");
-      else this.say("Only between convex bodies", "Searches between parts that are not convex go through trees of boxes; there is no picture of it here yet.");
+      else this.say("Only between convex polyhedra", "Searches between parts that are not convex go through trees of boxes, and those between rounded bodies through distances; there is no picture of them here yet.");
       return this.shown();
     }
     try {

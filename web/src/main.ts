@@ -15,6 +15,7 @@ import type { AssemblyTab } from "./assembly";
 import type { Found } from "./found";
 import type { Near, Nearness } from "./near";
 import { AnswerPanel, type Picture, type Refusal, type Shown } from "./panel";
+import { isShape } from "./primitive";
 import type { Source } from "./placing";
 import { Shadow } from "./shadow";
 import { IN_FILE, type State, TABS, type Tab, fromExample, fromHash, toHash } from "./state";
@@ -29,7 +30,8 @@ import type { Tool } from "./view/handles";
 const PROVED_SOON = 20_000;
 /** The example that is an assembly. */
 const GEARBOX = "gearbox";
-const engine = new Engine();
+/** The library that has rounded bodies. */
+const ROUND = "colltrans_round";
 
 class Page {
   private state: State = fromHash(location.hash);
@@ -45,7 +47,11 @@ class Page {
   private solidProof: PageCertify | undefined;
   private proving = 0;
   private readonly refusals: Partial<Record<Slot, Refusal>> = {};
-  private readonly engine = engine;
+  private engine = new Engine(SLOTS.some((slot) => isShape(this.state.parts[slot].file)) ? ROUND : "colltrans");
+  /** The library that has the body of a slot. */
+  private readonly placedIn: Record<Slot, Engine | undefined> = { moving: undefined, fixed: undefined };
+  /** The library that was used before. */
+  private replaced: Engine | undefined;
   private readonly bodies: Bodies = {};
   /** The sources of the bodies. */
   private readonly made: Partial<Record<Slot, Part>> = {};
@@ -94,6 +100,7 @@ class Page {
       change: (change) => this.change(change),
       choose: (slot) => this.choose(slot),
       take: (slot, take) => void this.take(slot, take),
+      shape: (slot, name) => this.shape(slot, name),
       dismiss: (slot) => this.restore(slot),
       verify: () => void this.verify(),
       copy: (text, what) => void this.copy(text, what),
@@ -226,6 +233,7 @@ class Page {
     const { pairs } = this;
     try {
       const pair = structuredClone(this.pair());
+      await this.bring();
       const { answer, took } = await this.engine.cast(pair);
       if (pairs === this.pairs) this.answered(pair, answer, took);
     } catch (error) {
@@ -353,10 +361,11 @@ class Page {
       // A file of the visitor is still available when an address, or the back button, needs it again.
       const made = this.made[slot];
       if (!known && this.bodies[slot] && made?.file === file && made.take === take) return;
-      const response = known ? await fetch(url) : undefined;
-      if (!response?.ok) throw new Refused(`${file} is not among the examples: choose or drop it again`);
-      const bytes = await response.arrayBuffer();
-      this.given[slot] = async () => (await fetch(url)).arrayBuffer();
+      const shape = isShape(file);
+      const response = known && !shape ? await fetch(url) : undefined;
+      if (!shape && !response?.ok) throw new Refused(`${file} is not among the examples: choose or drop it again`);
+      const bytes = await response?.arrayBuffer();
+      if (response) this.given[slot] = async () => (await fetch(url)).arrayBuffer();
       if (turn === this.turns[slot]) await this.load(slot, file, take, bytes);
     } catch (error) {
       if (turn !== this.turns[slot]) return;
@@ -368,8 +377,14 @@ class Page {
 
   private async load(slot: Slot, name: string, take: Take, file?: ArrayBuffer) {
     this.waiting(+1);
+    if (isShape(name) && this.engine.library !== ROUND) [this.replaced, this.engine] = [this.engine, new Engine(ROUND)];
+    const before = this.placedIn[slot];
+    this.placedIn[slot] = this.engine;
     try {
-      const body = await this.engine.load(slot, name, take, file);
+      const body = await this.engine.load(slot, name, take, file).catch((error: unknown) => {
+        this.placedIn[slot] = before;
+        throw error;
+      });
       this.remove(slot);
       [this.last, this.before] = [undefined, undefined];
       this.bodies[slot] = drawn(body);
@@ -380,12 +395,27 @@ class Page {
         this.state.motion.screw = null;
       }
       this.made[slot] = { file: name, take };
-      const bytes = this.given[slot];
+      const bytes = isShape(name) ? async () => new ArrayBuffer(0) : this.given[slot];
       if (bytes) this.sources[slot] = { name, take, bytes };
       delete this.refusals[slot];
     } finally {
       this.waiting(-1);
     }
+  }
+
+  /** Loads the bodies that the previous library has into the current one. */
+  private async bring() {
+    for (const slot of SLOTS) {
+      const source = this.sources[slot];
+      if (this.placedIn[slot] === this.engine || !source) continue;
+      const bytes = await source.bytes();
+      // Another body may have been loaded meanwhile.
+      if (this.placedIn[slot] === this.engine) continue;
+      this.placedIn[slot] = this.engine;
+      await this.engine.load(slot, source.name, source.take, bytes);
+    }
+    this.replaced?.stop("another library has the bodies");
+    this.replaced = undefined;
   }
 
   private remove(slot: Slot) {
@@ -450,9 +480,15 @@ class Page {
     await this.changedBody();
   }
 
-  /** Uses the rejected or current file in another way. */
-  private async take(slot: Slot, take: Take) {
-    const name = this.refusals[slot]?.name ?? this.state.parts[slot].file;
+  /** Replaces a body by one that a name describes, at the same pose. */
+  private shape(slot: Slot, name: string) {
+    this.turns[slot]++;
+    this.asInFile[slot] = false;
+    void this.take(slot, "convex", name);
+  }
+
+  /** Uses the rejected or current file, or a body of another name, in another way. */
+  private async take(slot: Slot, take: Take, name = this.refusals[slot]?.name ?? this.state.parts[slot].file) {
     try {
       await this.load(slot, name, take);
       await this.changedBody();

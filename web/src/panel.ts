@@ -7,6 +7,7 @@ import { numberField } from "./field";
 import { names } from "./formats";
 import { type Vec, length, short } from "./math";
 import type { Nearness } from "./near";
+import { described, isRound, isShape, shapeForm } from "./primitive";
 import { asCommand } from "./share";
 import { IN_FILE, type Solver, type State } from "./state";
 import type { Drawn } from "./view/body";
@@ -45,6 +46,8 @@ export interface Actions {
   change(change: (state: State) => void): void;
   choose(slot: Slot): void;
   take(slot: Slot, take: Take): void;
+  /** Uses a body that a name describes. */
+  shape(slot: Slot, name: string): void;
   dismiss(slot: Slot): void;
   verify(): void;
   /** Copies a text; `undefined` stands for the address. */
@@ -73,6 +76,7 @@ export class AnswerPanel {
   private readonly start = h("select", { "aria-label": "Where the algorithm starts" });
   private readonly narrowing: HTMLElement;
   private readonly graze: HTMLElement;
+  private readonly solvers = h("label", { style: "grid-column: span 2" }, "Solver", this.solver);
   private readonly solid: HTMLElement;
   private readonly ignore = h("input", { type: "checkbox" });
   private readonly check: HTMLButtonElement;
@@ -98,7 +102,7 @@ export class AnswerPanel {
     this.graze = h(
       "div", { class: "fields", style: "grid-template-columns: 1fr 1fr 1fr; align-items: end" },
       h("label", {}, "Graze tolerance", this.number("Graze tolerance", (s) => s.graze, (s, x) => (s.graze = Math.max(0, x)))),
-      h("label", { style: "grid-column: span 2" }, "Solver", this.solver),
+      this.solvers,
     );
     this.solid = h(
       "div", {},
@@ -107,7 +111,7 @@ export class AnswerPanel {
       h("label", { style: "display: flex; gap: 8px; align-items: center; margin-top: 8px" }, this.ignore, "Ignore overlaps at the start"),
     );
     this.proofCard = this.card("Proof", true, this.proof, h("div", { class: "row" }, this.check, this.verdict));
-    const bodies = this.card("Bodies", true, this.parts);
+    const bodies = this.card("Bodies", true, this.parts, shapeForm((slot, name) => act.shape(slot, name)));
     bodies.classList.add("bodies");
     this.element.append(
       this.said,
@@ -202,7 +206,10 @@ export class AnswerPanel {
     const solids = Object.values(shown.bodies).some((body) => body?.body.facts.kind === "solid");
     this.graze.hidden = solids;
     this.start.value = state.start;
-    this.narrowing.hidden = solids || state.solver !== "cta";
+    // Contacts of rounded bodies have one solver.
+    const round = hasRound(state);
+    this.solvers.hidden = round;
+    this.narrowing.hidden = solids || round || state.solver !== "cta";
     this.solid.hidden = !solids;
     this.command.disabled = asCommand(state) === undefined;
     this.command.title = this.command.disabled ? "The command cannot combine a hull with a part that is not convex" : "";
@@ -260,7 +267,7 @@ export class AnswerPanel {
       const refusal = refusals[slot];
       const { file, take } = state.parts[slot];
       const named = facts ? file : refusal?.name ?? file;
-      const count = facts &&
+      const count = facts && isShape(file) ? described(file, facts.radius) : facts &&
         `${facts.vertices.toLocaleString("en")} vertices, ${(facts.kind === "solid" ? facts.triangles : facts.faces).toLocaleString("en")} ${facts.kind === "solid" ? "triangles" : "faces"}, taken ${TAKEN[take]}`;
       return h("div", { class: "body" },
         h("span", { class: `swatch ${slot}` }),
@@ -282,15 +289,18 @@ export class AnswerPanel {
     if (!this.fresh("proof", [answer, verdict, shown.solidProof?.claims])) return;
     this.verdict.className = verdict ? `verdict ${verdict.holds ? "yes" : "no"}` : "";
     this.verdict.textContent = verdict?.text ?? "";
-    if (answer.kind === "convex") return refill(this.proof, ...convexProof(answer.proof));
+    if (answer.kind === "convex") return refill(this.proof, ...convexProof(answer.proof, hasRound(shown.state)));
     void import("./proofs").then(({ solidProof }) => {
       if (this.now?.answer === answer) refill(this.proof, ...solidProof(answer, this.now, bounds));
     });
   }
 }
 
-/** Describes the proof between convex bodies. */
-function convexProof(of: PageConvex["proof"]): Element[] {
+/** Checks whether a body is rounded. */
+const hasRound = ({ parts }: State) => isRound(parts.moving.file) || isRound(parts.fixed.file);
+
+/** Describes the proof between convex bodies, of which one may be rounded. */
+function convexProof(of: PageConvex["proof"], round: boolean): Element[] {
   const text = (...children: (string | HTMLElement | null)[]) => h("p", { class: "proof" }, ...children);
   if ("separation" in of) return [text("A plane parallel to d separates the bodies: the moving body is on one side, the fixed body on the other.")];
   const proof = of.contact;
@@ -298,7 +308,7 @@ function convexProof(of: PageConvex["proof"]): Element[] {
   return [
     bounds(proof),
     text("The green plane proves that there is no contact before ", h("b", {}, String(proof.lower)),
-      upper ? "; the two triangles share a point, which proves that there is a contact by " : ".",
+      upper ? `; ${round ? "points of the two triangles, between vertices of the cores, are at most both radii apart" : "the two triangles share a point"}, which proves that there is a contact by ` : ".",
       upper ? h("b", {}, upper) : null,
       upper ? `. The gap of ${short(proof.upper! - proof.lower, 2)} is rounding.` : ""),
   ];
@@ -314,7 +324,7 @@ function bounds(proof: Pick<Certificate, "lower" | "upper" | "rounding">): SVGSV
     svg("line", { x1: 8, x2: 308, y1: 22, y2: 22, stroke: "var(--line)", "stroke-width": 6, "stroke-linecap": "round" }),
     svg("line", { x1: x(proof.lower), x2: x(upper), y1: 22, y2: 22, stroke: "var(--free)", "stroke-width": 6, "stroke-linecap": "round" }),
     svg("text", { x: 8, y: 11 }, "lower"),
-    svg("text", { x: Math.max(60, x(upper)), y: 11, "text-anchor": "end" }, proof.upper === null ? "" : "upper"),
+    svg("text", { x: Math.max(80, x(upper)), y: 11, "text-anchor": "end" }, proof.upper === null ? "" : "upper"),
     svg("text", { x: 308, y: 40, "text-anchor": "end" }, `rounding alone: ${short(proof.rounding, 2)}`),
   );
   return picture;

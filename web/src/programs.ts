@@ -24,9 +24,8 @@ function rustPose(pose: number[]): string {
 function rustBody(slot: Slot, state: State): string {
   const { take } = state.parts[slot];
   const load = isSolid(take) ? "load_solid" : "load_convex";
-  const given = { convex: "", hull: "hull: true, ..", solid: "", open: "open: true, .." }[take];
-  const options = given ? `BodyOptions { ${given}BodyOptions::default() }` : "BodyOptions::default()";
-  const read = `    let ${slot} = ${load}(${JSON.stringify(files(state)[slot])}, &${options})?;\n`;
+  const given = { convex: "", hull: ".with_hull(true)", solid: "", open: ".with_open(true)" }[take];
+  const read = `    let ${slot} = ${load}(${JSON.stringify(files(state)[slot])}, &BodyOptions::default()${given})?;\n`;
   const solids = Object.values(state.parts).some((part) => isSolid(part.take));
   return solids && !isSolid(take) ? `${read}    let ${slot}_body = Solid::from_convex(&${slot}.body)?;\n` : read;
 }
@@ -42,9 +41,9 @@ export function asRust(state: State): string {
     ? `.with_options(Options::default().with_solver(Solver::Cta).with_narrowing(cta::Options::new(${from}, ${until})))?`
     : { auto: "", cta: ".with_solver(Solver::Cta)", portal: ".with_solver(Solver::Portal)" }[state.solver];
   const names = solids
-    ? ["Pose", !takes.every(isSolid) && "Solid", "StartOverlap"]
+    ? ["Pose", !takes.every(isSolid) && "Solid"]
     : ["Cast", narrowed && "Options", "Pose", solver && "Solver", narrowed && "cta"];
-  const loads = ["BodyOptions", solids && "between", !takes.every(isSolid) && "load_convex", solids && "load_solid"];
+  const loads = ["BodyOptions", solids && "cast_between", !takes.every(isSolid) && "load_convex", solids && "load_solid"];
   const body = (slot: Slot) => (solids && !isSolid(state.parts[slot].take) ? `${slot}_body` : `${slot}.body`);
   const precision = (slot: Slot) => (isSolid(state.parts[slot].take) ? `${slot}.precision` : "0.0");
   const tolerance = state.tolerance === null ? "None" : `Some(${float(state.tolerance)})`;
@@ -56,16 +55,16 @@ export function asRust(state: State): string {
     : "";
   const choices = solids ? "" : solver + (state.graze ? `.with_graze_tolerance(${float(state.graze)})?` : "");
   return `use colltrans::glam::${turned ? "{DQuat, DVec3}" : "DVec3"};
-use colltrans::{${names.filter(Boolean).join(", ")}};
+${solids ? "use colltrans::solid::StartOverlap;\n" : ""}use colltrans::{${names.filter(Boolean).join(", ")}};
 use colltrans_mesh::body::{${loads.filter(Boolean).join(", ")}};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-${rustBody("moving", state)}${rustBody("fixed", state)}    let cast = ${solids ? "between" : "Cast::new"}(
+${rustBody("moving", state)}${rustBody("fixed", state)}    let cast = ${solids ? "cast_between" : "Cast::new"}(
         ${body("moving")}.at(${rustPose(state.poses.moving)}),
         ${body("fixed")}.at(${rustPose(state.poses.fixed)}),
         ${vector(state.direction)},${more}
     )?${choices};
-    println!("{:#?}", cast.clearance()${solids ? "" : "?"});
+    println!("{:#?}", cast.clearance()?);
     Ok(())
 }
 `;

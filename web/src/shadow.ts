@@ -175,14 +175,14 @@ export class Shadow {
   }
 }
 
-/** Returns a point of a placed body that is extreme along a direction. */
+/** Returns a point of a placed body that is extreme along a unit vector. */
 function farthest(body: Drawn, pose: Pose, n: Vec): Vec {
-  const { vertices } = body.body;
+  const { vertices, facts } = body.body;
   let best = -Infinity;
   let at: Vec = [0, 0, 0];
-  for (let k = 0; k < vertices.length; k += 3) {
+  for (let k = 0; k < 3 * facts.vertices; k += 3) {
     const v = placed(pose, [vertices[k]!, vertices[k + 1]!, vertices[k + 2]!]);
     if (dot(v, n) > best) [best, at] = [dot(v, n), v];
   }
-  return at;
+  return add(at, times(n, facts.radius));
 }

@@ -4,7 +4,7 @@ import type { Slot, Take } from "./engine";
 import type { State } from "./state";
 
 export const isHome = (pose: number[]) => pose.join() === "0,0,0,0,0,0,1";
-export const quoted = (file: string) => (/^[\w./-]+$/.test(file) ? file : `'${file.replaceAll("'", String.raw`'\''`)}'`);
+export const quoted = (file: string) => (/^[\w.,:/-]+$/.test(file) ? file : `'${file.replaceAll("'", String.raw`'\''`)}'`);
 export const isSolid = (take: Take) => take === "solid" || take === "open";
 export const files = (state: State): Record<Slot, string> => ({
   moving: state.parts.moving.file.split("/").at(-1)!,

@@ -17,7 +17,7 @@ export interface Screw {
 }
 
 export interface State {
-  /** Files of `data/`, or names of files that the visitor dropped. */
+  /** Files of `data/`, names of files that the visitor dropped, or names such as `sphere:0.5`. */
   parts: Record<Slot, Part>;
   poses: Record<Slot, Pose>;
   direction: Vec;

@@ -259,7 +259,7 @@ export class Turning {
     const missing = !this.bodies();
     const said = error || missing
       ? { kind: "care", headline: "No answer", sentence: error ?? "A body is missing.", rows: [] as [string, string][] }
-      : answer && screw ? say(answer, screw, state.motion.minGap)
+      : answer && screw ? say(answer, screw, state)
       : { kind: "", headline: "…", sentence: "Reading.", rows: [] as [string, string][] };
     this.said.className = `said ${said.kind}`;
     refill(this.said, h("h2", {}, said.headline), h("p", {}, said.sentence), answer && h("p", { class: "took" }, `${took < 0.1 ? "less than 0.1" : Number(took.toPrecision(2))} ms in this browser`));

@@ -1,8 +1,9 @@
 // An answer as text.
 
 import type { Feature, PageCast, PageConvex, PageSolid } from "./answers";
-import { plane, touch } from "./engine";
+import { type Slot, plane, touch } from "./engine";
 import { length, short, shown } from "./math";
+import { isRound } from "./primitive";
 import type { State } from "./state";
 
 export interface Said {
@@ -19,6 +20,12 @@ export function feature(of: Feature): string {
   const list = length > 8 ? `${of.vertices.slice(0, 8).join(" ")} … (${length} in all)` : of.vertices.join(" ");
   if (of.kind === "vertex") return `vertex ${list}`;
   return of.kind === "edge" ? `edge ${of.vertices.join("–")}` : `face of vertices ${list}`;
+}
+
+/** Describes the feature of a body in contact. That of a rounded body is a feature of its core. */
+export function met(of: { kind: string }, slot: Slot, state: State): string {
+  const [what, body] = [of.kind === "edge" ? "an edge" : `a ${of.kind}`, slot === "moving" ? "the moving body" : "the fixed one"];
+  return isRound(state.parts[slot].file) ? `${body} (at ${what} of its core)` : `${what} of ${body}`;
 }
 
 /** Formats a number without exceeding a limit: with a few digits if they do not exceed it, otherwise a dozen, rounded down. */
@@ -65,7 +72,7 @@ function convex(answer: PageConvex, state: State): Said {
     ["moving", feature(first.features.moving)],
     ["fixed", feature(first.features.fixed)],
   ];
-  const meeting = `${kind(first.features.moving)} of the moving body meets ${kind(first.features.fixed)} of the fixed one`;
+  const meeting = `${met(first.features.moving, "moving", state)} meets ${met(first.features.fixed, "fixed", state)}`;
   if (record.outcome === "grazing") {
     return {
       kind: "care",
@@ -99,8 +106,6 @@ function convex(answer: PageConvex, state: State): Said {
     rows,
   };
 }
-
-const kind = (of: Feature) => (of.kind === "edge" ? "an edge" : `a ${of.kind}`);
 
 function solid(answer: PageSolid, state: State): Said {
   const { tolerance: used = 0, exit_bounds: [, gone] = [0, 0], surfaces = [], ...record } = answer.record;
@@ -138,7 +143,7 @@ function solid(answer: PageSolid, state: State): Said {
   return {
     kind: "stop",
     headline: `Blocked at t = ${within(Math.max(first.t, 0), shrunk)}`,
-    sentence: `Free for ${way(Math.max(first.t, 0), shrunk, state)}; then ${kind(first.features.moving)} of the moving body meets ${kind(first.features.fixed)} of the fixed one.`,
+    sentence: `Free for ${way(Math.max(first.t, 0), shrunk, state)}; then ${met(first.features.moving, "moving", state)} meets ${met(first.features.fixed, "fixed", state)}.`,
     rows: [
       ["safe for t up to", String(record.distance)],
       ["t, nominal bodies", short(first.t, 12)],

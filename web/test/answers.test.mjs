@@ -35,8 +35,9 @@ test("it opens solved, without a complaint, and is small", async () => {
   // Size limits of the library in bytes over time, of 400,000 that were the target: 398,681; 413,636 with hulls of convex
   // solids; 420,512 with circular edges; 431,144 with proofs for answers from hulls; 431,272 with outlines and compressed
   // relocations; 432,088 with answers built in place; 451,404 with points and segments against solids and bounds about the
-  // input; 449,698 with the library as crates and modules shortened by wasm-opt.
-  assert.ok(total < 452_000, `${total} bytes`);
+  // input; 449,698 with the library as crates and modules shortened by wasm-opt; 455,821 with radii of bodies in the
+  // library, and 1,027 of these in scripts for shapes.
+  assert.ok(total < 457_000, `${total} bytes`);
   assert.ok(!read.has("colltrans_assembly.wasm"));
 });
 

@@ -37,7 +37,7 @@ test("focus moves over the page in reading order", async () => {
   const order = [
     "example", "tab-answer", "Light or dark", /^The two bodies/, "Turn view", "Move", "Rotate", "Fit", "Along d", "Distance", "Play", "start", "first contact",
     "last contact", /^Where the moving body is shown/, "Proof", "Verify", "Bodies", /^Choose a file for the moving/, /^Choose a file for the fixed/,
-    "Question", "Direction x", "Direction y", "Direction z", "+x",
+    "A sphere, capsule or box", "Question", "Direction x", "Direction y", "Direction z", "+x",
   ];
   order.forEach((name, k) => assert.match(seen[k], name instanceof RegExp ? name : new RegExp(`^${name.replace("+", "\\+")}$`), `${k}: ${seen.join(", ")}`));
   // Arrow keys reach the other tabs.

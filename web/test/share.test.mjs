@@ -32,6 +32,17 @@ test("command asks the same question, or there is none", () => {
   assert.equal(asCommand(fromHash("#m=bolt.stl:hull&f=plate.off:solid")), undefined);
 });
 
+test("shapes are restored from their address, and named as on the command line", () => {
+  const state = fromHash("#m=capsule:0,0,-1e-7,0,0,1.5,0.25:convex&f=box:1,2,3,0.1:convex&mp=0,0,4,0,0,0,1&d=0,0,-1");
+  assert.deepEqual([state.parts.moving.file, state.parts.fixed.file], ["capsule:0,0,-1e-7,0,0,1.5,0.25", "box:1,2,3,0.1"]);
+  assert.deepEqual(fromHash(toHash(state)), state);
+  assert.equal(asCommand(state), "colltrans cast capsule:0,0,-1e-7,0,0,1.5,0.25 box:1,2,3,0.1 --direction=0,0,-1 --moving-pose=0,0,4,0,0,0,1");
+  assert.match(asCommand(fromHash("#m=sphere:0.5:convex&f=plate.off:solid")), /^colltrans clearance sphere:0\.5 --from plate\.off /);
+  assert.match(asRust(state), /load_convex\("box:1,2,3,0\.1", &BodyOptions::default\(\)\)\?/);
+  assert.match(asPython(state), /moving = colltrans\.read\("capsule:0,0,-1e-7,0,0,1\.5,0\.25"\)/);
+  assert.match(turningCommand(state, { point: [0, 0, 0], axis: [0, 0, 1], angle: 9, rise: 0 }), /^colltrans motion capsule:0,0,-1e-7,0,0,1\.5,0\.25 box:1,2,3,0\.1 --turn /);
+});
+
 test("motion is restored from its address and its command", () => {
   const state = fromHash("#example=bracket&tab=motion&screw=1,2e-7,-3,0,-1,0.1,-120.5,4&gap=0.25&time=0.5&fp=0,0,1,0,0,0,1&tol=1e-3");
   assert.deepEqual(state.motion, { screw: { point: [1, 2e-7, -3], axis: [0, -1, 0.1], angle: -120.5, rise: 4 }, body: "moving", minGap: 0.25, time: 0.5 });
@@ -44,7 +55,7 @@ test("motion is restored from its address and its command", () => {
 
 test("and as programs", () => {
   const state = fromHash('#m=a"b.stl:hull&f=plate.off:open&d=0,0,-1&tol=1&mp=0,0,7,0,0,0,1');
-  assert.match(asRust(state), /load_convex\("a\\"b\.stl", &BodyOptions \{ hull: true, [^]*Solid::from_convex\(&moving\.body\)\?[^]*load_solid\("plate\.off", &BodyOptions \{ open: true, [^]*DVec3::new\(0\.0, 0\.0, -1\.0\),\n *\[0\.0, fixed\.precision\],\n *Some\(1\.0\)/);
+  assert.match(asRust(state), /load_convex\("a\\"b\.stl", &BodyOptions::default\(\)\.with_hull\(true\)\)\?;[^]*Solid::from_convex\(&moving\.body\)\?[^]*load_solid\("plate\.off", &BodyOptions::default\(\)\.with_open\(true\)\)\?;[^]*cast_between\([^]*DVec3::new\(0\.0, 0\.0, -1\.0\),\n *\[0\.0, fixed\.precision\],\n *Some\(1\.0\)/);
   const narrowed = fromHash("#solver=cta&until=0.1");
   assert.match(asRust(narrowed), /use colltrans::\{Cast, Options, Pose, Solver, cta\};[^]*with_narrowing\(cta::Options::new\(cta::Start::Center, cta::Until::Gap\(0\.1\)\)\)\)\?;/);
   assert.match(asPython(narrowed), /solver=colltrans\.Cta\(until=0\.1\)/);

@@ -14,13 +14,13 @@ use colltrans_wasm::{Answers, distance, found, page, picture};
 fn main() -> Result<(), Box<dyn Error>> {
     let module = std::env::args().nth(1).unwrap_or_else(|| "page".to_owned());
     match &*module {
-        "page" => answer(page::State::default()),
+        "page" | "round" => answer(page::State::default()),
         "distance" => answer(distance::State::default()),
         "found" => answer(found::State::default()),
         "picture" => answer(picture::State),
         #[cfg(feature = "assembly")]
         "assembly" => answer(colltrans_wasm::assembly::State::default()),
-        #[cfg(feature = "motion")]
+        #[cfg(feature = "min-gap")]
         "motion" => answer(colltrans_wasm::motion::State::default()),
         _ => return Err(format!("{module}: unknown module, or its feature is off").into()),
     }?;

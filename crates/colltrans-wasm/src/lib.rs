@@ -12,9 +12,10 @@
 //! answers with those of a browser byte for byte, because numbers are written with enough digits to restore
 //! their bits.
 //!
-//! Features: `motion` compiles the module [`motion`] and the library's minimum gaps; `assembly` compiles the
-//! module [`assembly`] and the whole library. The other modules are smaller without them. `report` is only
-//! for the test of a report's viewer.
+//! Features: `min-gap` compiles the module [`motion`] and the library's minimum gaps, which rounded bodies need;
+//! `assembly` compiles the module [`assembly`] and the whole library. The other modules are smaller without them.
+//! [`page`] is linked twice, without `min-gap` and with it: the page loads the second one for a body that a name
+//! describes (`sphere:0.5`). `report` is only for the test of a report's viewer.
 
 mod answer;
 #[cfg(feature = "assembly")]
@@ -24,7 +25,7 @@ pub mod exports;
 mod fields;
 pub mod found;
 mod highlight;
-#[cfg(feature = "motion")]
+#[cfg(feature = "min-gap")]
 pub mod motion;
 pub mod page;
 pub mod picture;

@@ -1,12 +1,12 @@
-//! Two bodies, built from files as [`colltrans_mesh::body`] builds them for the module `page`. The modules
+//! Two bodies, built from files or names as [`colltrans_mesh::body`] builds them for the module `page`. The modules
 //! `distance` and `motion` share this code.
 
 use std::path::Path;
 
 use colltrans::solid::AsSolid;
 use colltrans::{ConvexPolyhedron, QueryError, Solid};
+use colltrans_mesh::Format;
 use colltrans_mesh::body::{self, BodyError, BodyOptions, Loaded};
-use colltrans_mesh::{Format, Mesh};
 use serde::Deserialize;
 use serde_json::json;
 
@@ -19,7 +19,14 @@ pub(crate) enum Slot {
     Fixed,
 }
 
-/// Two bodies, built from files.
+/// Builds the body that a name describes, such as `sphere:0.5`. Returns `None` if bytes are attached or the name
+/// begins with no known shape, so that it names a file.
+pub(crate) fn body_of_name(name: &str, file: &[u8]) -> Option<Result<ConvexPolyhedron, String>> {
+    let built = if file.is_empty() { body::body_of_name(name, 1.0)? } else { return None };
+    Some(built.map_err(|error| error.to_string()))
+}
+
+/// Two bodies, built from files or names.
 #[derive(Debug, Default)]
 pub(crate) struct Places([Option<Part>; 2]);
 
@@ -31,30 +38,33 @@ pub(crate) enum Part {
 }
 
 impl Part {
-    /// Builds a body from a mesh.
-    fn from_mesh(mesh: &Mesh, take: &str) -> Result<Self, String> {
+    /// Builds a body from a mesh file.
+    fn from_file(name: &str, take: &str, file: Vec<u8>) -> Result<Self, String> {
+        let path = Path::new(name);
+        let format = Format::from_path(path).map_err(|error| error.to_string())?;
+        let mesh = colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
         let options = BodyOptions::default().with_hull(take == "hull").with_open(take == "open");
         let words = |error: BodyError| error.to_string();
         match take {
-            "convex" | "hull" => body::convex(mesh, &options).map(Self::Convex).map_err(words),
-            "solid" | "open" => body::solid(mesh, &options).map(Self::Solid).map_err(words),
+            "convex" | "hull" => body::convex(&mesh, &options).map(Self::Convex).map_err(words),
+            "solid" | "open" => body::solid(&mesh, &options).map(Self::Solid).map_err(words),
             other => {
                 Err(format!("unknown kind of body {other}; known kinds: convex, hull, solid, open"))
             }
         }
     }
 
-    /// Returns the body as a solid.
+    /// Returns the body as a solid, a point or a segment as one facet without area.
     pub(crate) fn solid(&self) -> Result<&Solid, QueryError> {
         Ok(match self {
-            Self::Convex(of) => of.body.as_solid()?,
+            Self::Convex(of) => of.body.as_surface()?,
             Self::Solid(of) => &of.body,
         })
     }
 }
 
 impl Places {
-    /// Replaces a body by the body of a file. If this fails, the slot is empty.
+    /// Replaces a body by that of a file, or by the body that the name describes. If this fails, the slot is empty.
     pub(crate) fn place(
         &mut self,
         slot: Slot,
@@ -64,10 +74,13 @@ impl Places {
     ) -> Result<Answer, String> {
         let body = &mut self.0[slot as usize];
         *body = None;
-        let path = Path::new(name);
-        let format = Format::from_path(path).map_err(|error| error.to_string())?;
-        let mesh = colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
-        *body = Some(Part::from_mesh(&mesh, take)?);
+        *body = Some(match body_of_name(name, &file) {
+            Some(built) => {
+                let (body, precision, notes) = (built?, 0.0, Vec::new());
+                Part::Convex(Loaded { body, precision, notes })
+            }
+            None => Part::from_file(name, take, file)?,
+        });
         Ok(Answer::from_facts(&json!({ "placed": true })))
     }
 

@@ -8,7 +8,7 @@ import type { Slot } from "../engine";
 import { type Screw, type State, otherOf } from "../state";
 import type { View } from "../view";
 import { type Drawn, type How, matrixOf, placedBody } from "../view/body";
-import { disc, feature } from "../view/contact";
+import { disc, feature, onSurfaces } from "../view/contact";
 import type { Ball } from "../view/framing";
 import { type Label, above, ball, dashes, inPicture, line, rod } from "../view/shapes";
 import { type Grip, arm } from "./grips";
@@ -73,11 +73,13 @@ export function draw(view: View, state: State, screw: Screw, answer: PageMotion 
 }
 
 /** Draws the features in contact at the poses of the contact. */
-function contact(view: View, poses: Record<Slot, Pose>, { record: { point, normal }, lit }: PageMotion, { moving, fixed }: Record<Slot, Drawn>, labels: Label[]): Object3D[] {
+function contact(view: View, poses: Record<Slot, Pose>, { record: { point, normal }, lit }: PageMotion, bodies: Record<Slot, Drawn>, labels: Label[]): Object3D[] {
   if (!point || !normal) return [];
+  const { moving, fixed } = bodies;
   const { frame } = view;
   const { size, colours, origin } = frame;
   const [at, n] = [point as Vec, normal as Vec];
+  const shifts = onSurfaces(n, bodies);
   const reach = Math.min(moving.radius, fixed.radius);
   const [end, from] = [inPicture(frame, at), inPicture(frame, sub(at, times(n, 0.62 * reach)))];
   labels.push({ text: "n", start: end, end: from, kind: "normal" });
@@ -87,8 +89,8 @@ function contact(view: View, poses: Record<Slot, Pose>, { record: { point, norma
     rod(from, end, colours.normal, 0.007 * size),
     ball(end, 0.013 * size, new MeshBasicMaterial({ color: colours.normal })),
     ...(lit ? [
-      feature(kind(lit.fixed.vertices, lit.fixed.face), lit.fixed, fixed, matrixOf(poses.fixed, fixed.middle, origin), colours.fixedMark, size),
-      feature(kind(lit.moving.vertices, lit.moving.face), lit.moving, moving, matrixOf(poses.moving, moving.middle, origin), colours.movingMark, size),
+      feature(kind(lit.fixed.vertices, lit.fixed.face), lit.fixed, fixed, matrixOf(poses.fixed, fixed.middle, origin, shifts.fixed), colours.fixedMark, size),
+      feature(kind(lit.moving.vertices, lit.moving.face), lit.moving, moving, matrixOf(poses.moving, moving.middle, origin, shifts.moving), colours.movingMark, size),
     ] : []),
   ];
 }

@@ -4,9 +4,7 @@ import type { PageMotion, PageProve } from "../answers";
 import { type Vec, short, shown } from "../math";
 import type { Screw, State } from "../state";
 import { isSolid } from "../share";
-import { type Said, feature } from "../words";
-
-const kind = (of: { kind: string }) => (of.kind === "edge" ? "an edge" : `a ${of.kind}`);
+import { type Said, feature, met } from "../words";
 
 /** Describes the position on a screw at a time. */
 export function gone({ angle, rise }: Screw, time: number): string {
@@ -14,7 +12,8 @@ export function gone({ angle, rise }: Screw, time: number): string {
   return ways.filter(Boolean).join(", ");
 }
 
-export function say({ record }: PageMotion, screw: Screw, minGap: number): Said {
+export function say({ record }: PageMotion, screw: Screw, state: State): Said {
+  const { minGap } = state.motion;
   const { outcome, time, features, normal, point, looks = 0, planes, tolerance } = record;
   const rows: [string, string][] = [];
   const near = minGap ? `come as near as ${short(minGap)}` : "meet";
@@ -31,7 +30,7 @@ export function say({ record }: PageMotion, screw: Screw, minGap: number): Said 
   rows.push(["looked at", `${looks} times${planes === undefined ? "" : `, ${planes} planes in the proof`}`]);
   switch (outcome) {
     case "contact": {
-      const what = features && !minGap ? `then ${kind(features.moving)} of the moving body meets ${kind(features.fixed)} of the fixed one` : `then they ${near}`;
+      const what = features && !minGap ? `then ${met(features.moving, "moving", state)} meets ${met(features.fixed, "fixed", state)}` : `then they ${near}`;
       return { kind: "stop", headline: `Contact at ${gone(screw, time!.lower)}`, sentence: `Free for ${short(100 * time!.lower)} % of the motion; ${what}.`, rows };
     }
     case "grazing":

@@ -86,14 +86,14 @@ export function corner({ body }: Drawn, pose: Pose, v: number): Vec {
   return placed(pose, [vertices[3 * v]!, vertices[3 * v + 1]!, vertices[3 * v + 2]!]);
 }
 
-/** Returns the largest `n . x` of a placed body. */
+/** Returns the largest `n . x` of a placed body for a unit vector. */
 export function highest(body: Body, pose: Pose, n: Vec): number {
   const back: Pose = [0, 0, 0, -pose[3], -pose[4], -pose[5], pose[6]];
   const [x, y, z] = turned(back, n);
   let best = -Infinity;
-  const { vertices } = body;
-  for (let k = 0; k < vertices.length; k += 3) {
+  const { vertices, facts } = body;
+  for (let k = 0; k < 3 * facts.vertices; k += 3) {
     best = Math.max(best, x * vertices[k]! + y * vertices[k + 1]! + z * vertices[k + 2]!);
   }
-  return best + dot(n, [pose[0], pose[1], pose[2]]);
+  return best + facts.radius + dot(n, [pose[0], pose[1], pose[2]]);
 }

@@ -21,6 +21,7 @@ export function contact(frame: Frame, first: Touch, proof: PageCast["proof"], st
   const { moving, fixed } = bodies;
   const n = first.normal;
   const along = times(direction, first.t);
+  const shifts = onSurfaces(n, bodies, along);
   const point = inPicture(frame, first.point);
   const start = inPicture(frame, sub(first.point, along));
   const reach = Math.min(moving.radius, fixed.radius);
@@ -30,10 +31,10 @@ export function contact(frame: Frame, first: Touch, proof: PageCast["proof"], st
     ...disc(point, n, 0.8 * reach, colours.plane),
     rod(back(0.62), point, colours.normal, 0.007 * size),
     ball(point, 0.013 * size, new MeshBasicMaterial({ color: colours.normal })),
-    feature(first.features.fixed.kind, first.lit.fixed, fixed, matrixOf(poses.fixed, fixed.middle, origin), colours.fixedMark, size),
-    feature(first.features.moving.kind, first.lit.moving, moving, matrixOf(poses.moving, moving.middle, origin, along), colours.movingMark, size),
+    feature(first.features.fixed.kind, first.lit.fixed, fixed, matrixOf(poses.fixed, fixed.middle, origin, shifts.fixed), colours.fixedMark, size),
+    feature(first.features.moving.kind, first.lit.moving, moving, matrixOf(poses.moving, moving.middle, origin, shifts.moving), colours.movingMark, size),
   ];
-  if (proof && "contact" in proof) parts.push(...witness(frame, proof.contact.pairs, along, poses, bodies));
+  if (proof && "contact" in proof) parts.push(...witness(frame, proof.contact.pairs, shifts, poses, bodies));
   return { parts, label: { text: "n", start: point, end: back(0.62), kind: "normal" } };
 }
 
@@ -49,12 +50,19 @@ export function disc(at: Vector3, normal: Vec, radius: number, colour: string): 
   return [disc, loop(rim, colour, 0.8)];
 }
 
+/** Returns the shifts from features of the cores to the surfaces in contact, if the moving body has moved by `along`. Where
+ * the surface of a rounded body has a given normal, it is a feature of the core, moved along the normal by the radius. */
+export const onSurfaces = (normal: Vec, { moving, fixed }: Both, along: Vec = [0, 0, 0]): Record<Slot, Vec> => ({
+  moving: add(along, times(normal, moving.body.facts.radius)),
+  fixed: times(normal, -fixed.body.facts.radius),
+});
+
 /** Draws the three pairs of vertices that prove the upper bound, at the contact. */
-function witness(frame: Frame, pairs: Certificate["pairs"], along: Vec, poses: Poses, { moving, fixed }: Both): Object3D[] {
+function witness(frame: Frame, pairs: Certificate["pairs"], shifts: Record<Slot, Vec>, poses: Poses, { moving, fixed }: Both): Object3D[] {
   const { colours } = frame;
   const triangles: [Vec[], string][] = [
-    [pairs.map((pair) => add(corner(moving, poses.moving, pair.moving), along)), colours.movingMark],
-    [pairs.map((pair) => corner(fixed, poses.fixed, pair.fixed)), colours.fixedMark],
+    [pairs.map((pair) => add(corner(moving, poses.moving, pair.moving), shifts.moving)), colours.movingMark],
+    [pairs.map((pair) => add(corner(fixed, poses.fixed, pair.fixed), shifts.fixed)), colours.fixedMark],
   ];
   return triangles.flatMap(([corners, colour]) => {
     const at = corners.map((v) => inPicture(frame, v));
@@ -62,7 +70,7 @@ function witness(frame: Frame, pairs: Certificate["pairs"], along: Vec, poses: P
   });
 }
 
-/** Draws the vertex, edge or face in contact. */
+/** Draws the vertex, edge or face in contact. Faces of rounded bodies are those of their cores. */
 export function feature(kind: Feature["kind"], of: PageFeature, body: Drawn, matrix: Matrix4, colour: string, size: number): Group {
   const group = new Group();
   group.matrixAutoUpdate = false;
@@ -74,7 +82,7 @@ export function feature(kind: Feature["kind"], of: PageFeature, body: Drawn, mat
     material.polygonOffset = true;
     material.polygonOffsetFactor = -1;
     material.polygonOffsetUnits = -1;
-    group.add(new Mesh(new BufferGeometry().setFromPoints(faceOf(body, of.face)), material));
+    group.add(new Mesh(new BufferGeometry().setFromPoints(body.body.facts.radius ? fan(of.vertices.map(at)) : faceOf(body, of.face)), material));
   } else if (kind === "edge" && of.vertices.length === 2) {
     const [a, b] = of.vertices.map(at) as [Vector3, Vector3];
     const width = 0.007 * size;
@@ -89,6 +97,9 @@ export function feature(kind: Feature["kind"], of: PageFeature, body: Drawn, mat
   }
   return group;
 }
+
+/** Returns the corners of the triangles of a convex polygon. */
+const fan = ([first, ...rest]: Vector3[]): Vector3[] => rest.slice(1).flatMap((v, k) => [first!, rest[k]!, v]);
 
 /** Returns the corners of the triangles of a face, relative to the body's middle. */
 function faceOf({ body: { faces }, geometry }: Drawn, face: number | undefined): Vector3[] {

@@ -26,6 +26,7 @@ use thiserror::Error;
 pub use drawn::drawn_body;
 pub use excess::Excess;
 pub use note::{Note, RemovedFaces, report_notes};
+pub use shape_name::body_of_name;
 
 use crate::words::count_text;
 use crate::{Error, Mesh, ReadOptions, read_with};
@@ -383,7 +384,7 @@ fn shape_of_name(
     path: &Path,
     options: &BodyOptions,
 ) -> Option<Result<Loaded<ConvexPolyhedron>, LoadError>> {
-    let built = shape_name::body_of_name(path.to_str()?, options.scale)?;
+    let built = body_of_name(path.to_str()?, options.scale)?;
     Some(match built {
         Ok(body) => Ok(Loaded { body, precision: 0.0, notes: Vec::new() }),
         Err(source) => Err(LoadError::Body { path: path.to_owned(), source }),

@@ -15,7 +15,10 @@ const FORMS: &str =
 ///
 /// A box has the given edge lengths and its centre at the origin. Its radius rounds it outwards. A sphere has its
 /// centre at the origin, and a capsule the given ends of its axis.
-pub(super) fn body_of_name(name: &str, scale: f64) -> Option<Result<ConvexPolyhedron, BodyError>> {
+///
+/// # Errors
+/// [`BodyError::ShapeName`] for a malformed shape, and the errors of the body.
+pub fn body_of_name(name: &str, scale: f64) -> Option<Result<ConvexPolyhedron, BodyError>> {
     let (shape, numbers) = name.split_once(':')?;
     if !matches!(shape, "sphere" | "capsule" | "box") {
         return None;

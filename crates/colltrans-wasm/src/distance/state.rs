@@ -13,13 +13,13 @@ use crate::pose::pose;
 #[derive(Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case")]
 enum Question {
-    /// Builds a body from the attached file.
+    /// Builds a body from the attached file, or the one that the name describes.
     Place { slot: Slot, name: String, take: String },
     /// Computes the distance of the bodies. Poses are `x,y,z,qx,qy,qz,qw`.
     Distance { moving_pose: [f64; 7], fixed_pose: [f64; 7] },
 }
 
-/// Two bodies, built from files.
+/// Two bodies, built from files or names.
 #[derive(Debug, Default)]
 pub struct State(Places);
 

@@ -10,7 +10,7 @@ use crate::pose::pose;
 #[derive(Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case")]
 pub(crate) enum Question {
-    /// Builds a body from the attached file.
+    /// Builds a body from the attached file, or the one that the name describes.
     Place { slot: Slot, name: String, take: String },
     /// Records a search.
     Search(Search),

@@ -11,8 +11,9 @@ use super::question::{Question, Slot};
 use super::{levels, search};
 use crate::Answers;
 use crate::answer::{Answer, Refusal};
+use crate::placing::body_of_name;
 
-/// Two convex bodies, built from files.
+/// Two convex bodies, built from files or names.
 #[derive(Debug, Default)]
 pub struct State([Option<ConvexPolyhedron>; 2]);
 
@@ -42,7 +43,8 @@ impl State {
         }
     }
 
-    /// Builds the body as [`colltrans_mesh::body`] does for the module `page`.
+    /// Builds the body as [`colltrans_mesh::body`] does for the module `page`. Rounded bodies are refused, because
+    /// levels are those of polygons.
     fn place(
         &mut self,
         slot: Slot,
@@ -56,11 +58,19 @@ impl State {
             "convex" | "hull" => BodyOptions::default().with_hull(take == "hull"),
             other => return Err(format!("a body used as {other} has no sections")),
         };
-        let path = Path::new(name);
-        let format = Format::from_path(path).map_err(|error| error.to_string())?;
-        let mesh = colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
-        let made = body::convex(&mesh, &options).map_err(|error| error.to_string())?;
-        *place = Some(made.body);
+        let body = if let Some(built) = body_of_name(name, &file) {
+            built?
+        } else {
+            let path = Path::new(name);
+            let format = Format::from_path(path).map_err(|error| error.to_string())?;
+            let mesh =
+                colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
+            body::convex(&mesh, &options).map_err(|error| error.to_string())?.body
+        };
+        if body.radius() > 0.0 {
+            return Err(format!("{name}: a rounded body has no polygons as sections"));
+        }
+        *place = Some(body);
         Ok(Answer::from_facts(&json!({ "placed": true })))
     }
 }

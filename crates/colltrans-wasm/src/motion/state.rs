@@ -18,7 +18,7 @@ use crate::pose::pose;
 #[derive(Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case")]
 enum Question {
-    /// Builds a body from the attached file.
+    /// Builds a body from the attached file, or the one that the name describes.
     Place { slot: Slot, name: String, take: String },
     /// Computes the first contact.
     Motion(Request),
@@ -68,7 +68,7 @@ impl Kind {
     }
 }
 
-/// Two bodies, built from files.
+/// Two bodies, built from files or names.
 #[derive(Debug, Default)]
 pub struct State(Places);
 

@@ -1,14 +1,16 @@
-//! From the bytes of a file to a body, and to the data that the page draws.
+//! From the bytes of a file, or from a name, to a body, and to the data that the page draws.
 //!
-//! Numbers of an answer: the vertices (three `f64` each), the triangles (three `u32` each), the face of each
-//! triangle (`u32`), the edges to draw (two `u32` each). Vertex indices are those of the body.
+//! Numbers of an answer: the points (three `f64` each), the triangles (three `u32` each), the face of each
+//! triangle (`u32`), the edges to draw (two `u32` each). The first points are the vertices of the body, with their
+//! indices. A rounded body is drawn as a polyhedron on its surface, whose vertices and faces follow.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::OnceLock;
 
 use colltrans::solid::ShellKind;
 use colltrans::{Aabb, ConvexPolyhedron, Solid};
-use colltrans_mesh::body::{self, BodyError, BodyKind, BodyOptions, Loaded, Note};
+use colltrans_mesh::body::{self, BodyError, BodyKind, BodyOptions, Loaded, Note, drawn_body};
 use colltrans_mesh::{Format, Mesh, sides};
 use glam::DVec3;
 use serde_json::json;
@@ -66,10 +68,14 @@ impl Part {
 #[derive(Debug)]
 struct Facts {
     kind: &'static str,
+    /// Number of triangles of the body as a solid.
+    triangles: usize,
     faces: usize,
     edges: usize,
     dimension: u8,
     closed: bool,
+    /// The radius of the ball that sweeps the body.
+    radius: f64,
     /// For a surface the numbers of shells of each kind.
     shells: Option<[usize; 3]>,
     volume: f64,
@@ -109,19 +115,48 @@ pub(crate) fn build_body(
     match take {
         BodyKind::Convex | BodyKind::Hull => {
             let loaded = body::convex(mesh, &options).map_err(|error| refusal(name, &error))?;
-            let Loaded { body, notes, .. } = loaded;
-            let answer =
-                body_answer(&convex_facts(&body, &notes), body.vertices(), &hull_drawing(&body));
-            Ok((Part::Convex(Hull { body, solid: OnceLock::new() }), answer))
+            Ok(convex_part(loaded.body, &loaded.notes))
         }
         BodyKind::Solid | BodyKind::Open => {
             let loaded = body::solid(mesh, &options).map_err(|error| refusal(name, &error))?;
             let Loaded { body, precision, notes } = loaded;
-            let answer =
-                body_answer(&solid_facts(&body, &notes), body.vertices(), &solid_drawing(&body));
+            let answer = body_answer(
+                &solid_facts(&body, &notes),
+                body.vertices(),
+                &[],
+                &solid_drawing(&body),
+            );
             Ok((Part::Solid(Facets { body, precision }), answer))
         }
     }
+}
+
+/// Returns the body that a name describes, and the answer with its drawing.
+pub(crate) fn shape(
+    body: ConvexPolyhedron,
+    name: &str,
+    take: BodyKind,
+) -> Result<(Part, Answer), Refusal> {
+    if take == BodyKind::Convex {
+        return Ok(convex_part(body, &[]));
+    }
+    let error = format!("{name} describes a convex body; other uses need a mesh");
+    Err(Refusal { instead: vec![take_name(BodyKind::Convex)], ..error.into() })
+}
+
+/// Returns a convex body, and the answer with its drawing.
+fn convex_part(body: ConvexPolyhedron, notes: &[Note]) -> (Part, Answer) {
+    let facts = convex_facts(&body, notes);
+    // Without the feature no body is rounded, and the code of the drawing is left out.
+    let surface = if cfg!(feature = "min-gap") { drawn_body(&body) } else { Cow::Borrowed(&body) };
+    let answer = match surface {
+        Cow::Borrowed(_) => body_answer(&facts, body.vertices(), &[], &hull_drawing(&body, 0)),
+        Cow::Owned(surface) => {
+            let drawn = hull_drawing(&surface, body.vertices().len() as u32);
+            body_answer(&facts, body.vertices(), surface.vertices(), &drawn)
+        }
+    };
+    (Part::Convex(Hull { body, solid: OnceLock::new() }), answer)
 }
 
 /// Returns the name of a way to use a mesh, as in questions.
@@ -139,21 +174,24 @@ fn refusal(name: &str, error: &BodyError) -> Refusal {
     Refusal { instead, ..format!("{name}: {error}").into() }
 }
 
-fn bounds(vertices: &[DVec3]) -> [[f64; 3]; 2] {
+/// Returns the low and the high corner of a box around vertices that a ball of this radius sweeps.
+fn bounds(vertices: &[DVec3], radius: f64) -> [[f64; 3]; 2] {
     let Aabb { low, high } = Aabb::from_points(vertices.iter().copied());
-    [low.to_array(), high.to_array()]
+    [(low - radius).to_array(), (high + radius).to_array()]
 }
 
 fn convex_facts(body: &ConvexPolyhedron, notes: &[Note]) -> Facts {
     Facts {
         kind: "convex",
+        triangles: if body.dimension() < 2 { 1 } else { 2 * body.vertices().len() - 4 },
         faces: body.face_count(),
         edges: body.edge_count(),
         dimension: body.dimension(),
         closed: true,
+        radius: body.radius(),
         shells: None,
         volume: body.volume(),
-        bounds: bounds(body.vertices()),
+        bounds: bounds(body.vertices(), body.radius()),
         notes: note_texts(notes),
     }
 }
@@ -162,24 +200,26 @@ fn solid_facts(body: &Solid, notes: &[Note]) -> Facts {
     let faces = body.facet_indices().iter().max().map_or(0, |last| last.index() + 1);
     Facts {
         kind: "solid",
+        triangles: body.triangles().len(),
         faces,
         edges: 0,
         dimension: 3,
         closed: body.is_closed(),
+        radius: 0.0,
         shells: (!body.is_closed())
             .then(|| ShellKind::ALL.map(|kind| body.report().shell_count(kind))),
         volume: body.volume(),
-        bounds: bounds(body.vertices()),
+        bounds: bounds(body.vertices(), 0.0),
         notes: note_texts(notes),
     }
 }
 
-/// Returns faces as fans and every edge once. Edges between nearly coplanar faces of a dense body are
-/// omitted.
-fn hull_drawing(body: &ConvexPolyhedron) -> Drawn {
+/// Returns faces as fans and every edge once. Edges between nearly coplanar faces are omitted if the body is dense or
+/// the surface of a rounded body, which has its vertices after the `first` ones.
+fn hull_drawing(body: &ConvexPolyhedron, first: u32) -> Drawn {
     let mut drawn = Drawn::default();
     for face in 0..body.face_count() as u32 {
-        let corners: Vec<u32> = body.face_vertices(face).collect();
+        let corners: Vec<u32> = body.face_vertices(face).map(|v| first + v).collect();
         for edge in corners.windows(2).skip(1) {
             drawn.triangles.push([corners[0], edge[0], edge[1]]);
             drawn.faces.push(face);
@@ -190,9 +230,9 @@ fn hull_drawing(body: &ConvexPolyhedron) -> Drawn {
         |face: u32, other: u32| body.face_normal(face).dot(body.face_normal(other)) <= SMOOTH;
     for half in all {
         let twin = &all[half.twin as usize];
-        let is_drawn = body.edge_count() <= DENSE || is_sharp(half.face, twin.face);
-        if half.origin < twin.origin && is_drawn {
-            drawn.edges.push([half.origin, twin.origin]);
+        let draws_all = first == 0 && body.edge_count() <= DENSE;
+        if half.origin < twin.origin && (draws_all || is_sharp(half.face, twin.face)) {
+            drawn.edges.push([first + half.origin, first + twin.origin]);
         }
     }
     drawn
@@ -223,18 +263,19 @@ fn solid_drawing(body: &Solid) -> Drawn {
     Drawn { triangles: triangles.to_vec(), faces: body.face_numbers().to_vec(), edges }
 }
 
-/// Builds the answer about a body.
-fn body_answer(facts: &Facts, vertices: &[DVec3], drawn: &Drawn) -> Answer {
+/// Builds the answer about a body. `surface` has the points of a rounded body's drawing.
+fn body_answer(facts: &Facts, vertices: &[DVec3], surface: &[DVec3], drawn: &Drawn) -> Answer {
     let triangles = drawn.triangles.len();
     let mut answer = Answer::from_facts(&json!({
         "body": {
             "kind": facts.kind,
             "vertices": vertices.len(),
-            "triangles": triangles,
+            "triangles": facts.triangles,
             "faces": facts.faces,
             "edges": facts.edges,
             "dimension": facts.dimension,
             "closed": facts.closed,
+            "radius": facts.radius,
             "shells": facts.shells.map(|[closed, sided, sheets]| {
                 json!({ "closed": closed, "sided": sided, "sheet": sheets })
             }),
@@ -243,11 +284,14 @@ fn body_answer(facts: &Facts, vertices: &[DVec3], drawn: &Drawn) -> Answer {
             "high": facts.bounds[1],
             "notes": facts.notes,
         },
+        "points": vertices.len() + surface.len(),
+        "triangles": triangles,
         "edges": drawn.edges.len(),
     }));
     let numbers = &mut answer.numbers;
-    numbers.reserve(24 * vertices.len() + 16 * triangles + 8 * drawn.edges.len());
-    vertices.iter().flat_map(DVec3::to_array).for_each(|c| numbers.extend(c.to_le_bytes()));
+    let points = vertices.iter().chain(surface);
+    numbers.reserve(24 * (vertices.len() + surface.len()) + 16 * triangles + 8 * drawn.edges.len());
+    points.flat_map(DVec3::to_array).for_each(|c| numbers.extend(c.to_le_bytes()));
     drawn.triangles.iter().flatten().for_each(|v| numbers.extend(v.to_le_bytes()));
     drawn.faces.iter().for_each(|f| numbers.extend(f.to_le_bytes()));
     drawn.edges.iter().flatten().for_each(|v| numbers.extend(v.to_le_bytes()));

@@ -8,12 +8,13 @@ use super::question::{Load, Question, Slot};
 use super::{certify, convex, solid};
 use crate::Answers;
 use crate::answer::{Answer, Refusal};
+use crate::placing::body_of_name;
 
 /// Number of bytes of a file above which its body is dropped before the next file is read, because both may
 /// not fit.
 const LARGE: usize = 64 << 20;
 
-/// Two bodies, built from files.
+/// Two bodies, built from files or names.
 #[derive(Debug, Default)]
 pub struct State {
     moving: Place,
@@ -30,7 +31,7 @@ struct Place {
     offered: Option<File>,
 }
 
-/// A file that has been read.
+/// A file that has been read. A body that a name describes has no bytes and no mesh.
 #[derive(Debug)]
 struct File {
     name: String,
@@ -39,8 +40,17 @@ struct File {
 }
 
 impl Place {
-    /// Builds a body. Without bytes it uses the last rejected file, or the file in use, in another way.
+    /// Builds a body. Without bytes it is the one that the name describes, if the feature `min-gap` is on. Otherwise
+    /// the last rejected file, or the file in use, is used in another way.
     fn load(&mut self, load: Load, bytes: Vec<u8>) -> Result<Answer, Refusal> {
+        if cfg!(feature = "min-gap")
+            && let Some(built) = body_of_name(&load.name, &bytes)
+        {
+            let (part, answer) = body::shape(built?, &load.name, load.take)?;
+            self.offered = None;
+            self.body = Some((File { name: load.name, bytes: 0, mesh: Mesh::default() }, part));
+            return Ok(answer);
+        }
         let used = self.body.as_ref().map(|(file, _)| file);
         let known = self.offered.as_ref().or(used).is_some_and(|file| file.name == load.name);
         if !bytes.is_empty() || !known {

@@ -71,7 +71,8 @@ impl ConvexPolyhedron {
     /// [rounded](Self::rounded).
     #[inline]
     pub fn radius(&self) -> f64 {
-        self.radius
+        // Without the feature no body is rounded, and the compiler removes code that only a radius reaches.
+        if cfg!(feature = "min-gap") { self.radius } else { 0.0 }
     }
 
     /// Returns the volume that rounding adds to that of the core (Steiner's formula): the area times `r`, the edges'

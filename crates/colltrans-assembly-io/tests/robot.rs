@@ -394,18 +394,7 @@ const MJCF_CHAIN: &str = r#"
 #[test]
 fn mjcf_bodies_are_where_mujoco_places_them() {
     let chain = read_mjcf(MJCF_CHAIN).expect("a robot");
-    let path = JointPath::at_unit_times(vec![vec![0.3, -0.7, 0.2, 0.5]]).expect("a path");
-    let cell = Cell::new(chain, Vec::new(), None).expect("a cell");
-    let cast = cell.path_cast(&path, 0.0).expect("a cast");
-    let start = colltrans::motion::path::PathPlace { row: 0, share: 0.0 };
-    let place = |(k, placed): (usize, colltrans::AnyPlaced<'_>)| {
-        let colltrans::AnyPlaced::Convex(placed) = placed else { panic!("not convex") };
-        let pose = cast.world_pose(k, start);
-        let at = DAffine3::from_mat3_translation(pose.matrix(), pose.translation());
-        let points = placed.body.vertices().iter().map(|v| at.transform_point3(*v));
-        points.map(|point| (cell.names()[k].clone(), point)).collect::<Vec<_>>()
-    };
-    let found: Vec<(String, DVec3)> = cast.bodies().enumerate().flat_map(place).collect();
+    let found = placed_vertices(chain, &[0.3, -0.7, 0.2, 0.5]);
     // Centres of spheres, ends of axes and a corner, computed by MuJoCo 4.0.0 (`mj_kinematics`).
     let wanted = [
         ("world", [0.151_336_560_555, 0.352_473_885_014, -0.285_428_110_194]),
@@ -487,6 +476,258 @@ fn unsupported_mjcf_elements_are_rejected_with_their_place() {
     assert!(error_text("<include file=\"other.xml\"/>").contains("unsupported element include"));
     assert!(error_text("<compiler eulerseq=\"abc\"/>").contains("accepted: three of xyzXYZ"));
     assert!(error_text("<worldbody/>").contains("none of its 0 bodies has a geom that collides"));
+}
+
+/// Reads a robot from an SDF file of version 1.11 with these contents.
+fn read_sdf(text: &str) -> Result<Robot, ReadError> {
+    read_sdf_of("1.11", text)
+}
+
+fn read_sdf_of(version: &str, text: &str) -> Result<Robot, ReadError> {
+    let folder = TemporaryFolder::new();
+    let file = folder.path().join("robot.sdf");
+    std::fs::write(&file, format!("<sdf version=\"{version}\">{text}</sdf>")).unwrap();
+    read_robot(&file, &ReadOptions::default())
+}
+
+/// Returns the vertices of all convex bodies in the world, with the names of their links, for a row of joint values.
+fn placed_vertices(robot: Robot, row: &[f64]) -> Vec<(String, DVec3)> {
+    let path = JointPath::at_unit_times(vec![row.to_vec()]).expect("a path");
+    let cell = Cell::new(robot, Vec::new(), None).expect("a cell");
+    let cast = cell.path_cast(&path, 0.0).expect("a cast");
+    let start = colltrans::motion::path::PathPlace { row: 0, share: 0.0 };
+    let place = |(k, placed): (usize, colltrans::AnyPlaced<'_>)| {
+        let colltrans::AnyPlaced::Convex(placed) = placed else { panic!("not convex") };
+        let pose = cast.world_pose(k, start);
+        let at = DAffine3::from_mat3_translation(pose.matrix(), pose.translation());
+        let points = placed.body.vertices().iter().map(|v| at.transform_point3(*v));
+        points.map(|point| (cell.names()[k].clone(), point)).collect::<Vec<_>>()
+    };
+    cast.bodies().enumerate().flat_map(place).collect()
+}
+
+fn assert_has_vertex(found: &[(String, DVec3)], link: &str, point: DVec3) {
+    assert!(
+        found.iter().any(|(name, at)| name == link && at.distance(point) < 1e-13),
+        "{link} {point}: {found:?}"
+    );
+}
+
+/// An arm whose poses are relative to its model, to links, joints and a frame.
+const SDF_ARM: &str = r#"
+<model name="base">
+  <pose>0 0 0.5 0 0 0</pose>
+  <frame name="flange" attached_to="upper"><pose>1 0 0 0 0 0</pose></frame>
+  <link name="base">
+    <inertial><mass>1</mass></inertial>
+    <collision name="c"><geometry><box><size>1 1 0.2</size></box></geometry></collision>
+    <visual name="v"><geometry><plane/></geometry></visual>
+  </link>
+  <link name="upper">
+    <pose relative_to="yaw"/>
+    <collision name="c">
+      <pose>0.5 0 0 0 1.5707963267948966 0</pose>
+      <geometry><capsule><radius>0.1</radius><length>1</length></capsule></geometry>
+    </collision>
+  </link>
+  <joint name="yaw" type="revolute">
+    <parent>base</parent><child>upper</child>
+    <pose relative_to="base" degrees="true">0 0 0.1 0 0 90</pose>
+    <axis><xyz>0 0 1</xyz><limit><lower>-1</lower><upper>2</upper></limit></axis>
+  </joint>
+  <link name="tip">
+    <pose relative_to="flange" rotation_format="quat_xyzw">0.5 0 0 0 0 0.6 0.8</pose>
+    <collision name="c">
+      <pose relative_to="flange">0.5 0.25 0 0 0 0</pose>
+      <geometry><sphere><radius>0.1</radius></sphere></geometry>
+    </collision>
+    <collision name="none"><geometry><empty/></geometry></collision>
+  </link>
+  <joint name="reach" type="prismatic">
+    <parent>flange</parent><child>tip</child>
+    <axis><xyz expressed_in="__model__">0 1 0</xyz><limit><lower>-1e16</lower><upper>1e16</upper></limit></axis>
+  </joint>
+  <joint name="mount" type="fixed"><parent>world</parent><child>base</child></joint>
+</model>"#;
+
+#[test]
+fn sdf_links_are_placed_relative_to_named_frames() {
+    let arm = read_sdf(SDF_ARM).expect("a robot");
+    assert_eq!(arm.name(), "base");
+    let links: Vec<_> =
+        arm.links().iter().map(|link| (&*link.name, link.frame, link.bodies.len())).collect();
+    assert_eq!(links, [("base", Some(0), 1), ("upper", Some(1), 1), ("tip", Some(2), 1)]);
+    let joints: Vec<_> = arm.joints().iter().map(|j| (&*j.name, j.kind, j.limits)).collect();
+    assert_eq!(
+        joints,
+        [("yaw", JointKind::Revolute, Some([-1.0, 2.0])), ("reach", JointKind::Prismatic, None),]
+    );
+    let AnyBody::Convex(capsule) = &arm.links()[1].bodies[0] else { panic!("not convex") };
+    assert_eq!((capsule.vertices().len(), capsule.radius()), (2, 0.1));
+    let found = placed_vertices(arm, &[0.3, 0.2]);
+    // The same chain of poses, multiplied by hand; at the joint positions 0 the links are where rod 0.5.0, a reader in
+    // Python, places them. The y axis of the model is then the x axis of the upper arm.
+    let upper = DAffine3::from_translation(DVec3::new(0.0, 0.0, 0.6))
+        * DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_2 + 0.3);
+    assert_has_vertex(&found, "base", DVec3::new(0.5, -0.5, 0.6));
+    for end in [DVec3::ZERO, DVec3::X] {
+        assert_has_vertex(&found, "upper", upper.transform_point3(end));
+    }
+    assert_has_vertex(&found, "tip", upper.transform_point3(DVec3::new(1.7, 0.25, 0.0)));
+}
+
+/// Two models of a world, one of which has a nested model, and the other is static.
+const SDF_WORLD: &str = r#"
+<world name="cell">
+  <gravity>0 0 -9.8</gravity>
+  <model name="robot" canonical_link="arm::forearm">
+    <pose>1 0 0 0 0 0</pose>
+    <link name="base"><collision name="c"><geometry><sphere><radius>1</radius></sphere></geometry></collision></link>
+    <model name="arm">
+      <pose relative_to="base">0 2 0 0 0 0</pose>
+      <frame name="tool"><pose>0 0 3 0 0 0</pose></frame>
+      <link name="forearm">
+        <collision name="c">
+          <pose relative_to="tool"/><geometry><sphere><radius>1</radius></sphere></geometry>
+        </collision>
+      </link>
+    </model>
+    <joint name="elbow" type="continuous">
+      <parent>base</parent><child>arm</child>
+      <pose relative_to="arm::tool"/>
+      <axis><xyz>1 0 0</xyz></axis>
+    </joint>
+  </model>
+  <model name="table">
+    <static>true</static>
+    <pose relative_to="robot">0 0 -5 0 0 0</pose>
+    <link name="top"><collision name="c"><geometry><sphere><radius>1</radius></sphere></geometry></collision></link>
+    <link name="leaf"><pose>0 1 0 0 0 0</pose></link>
+    <joint name="hinge" type="revolute"><parent>top</parent><child>leaf</child><axis><xyz>1 0 0</xyz></axis></joint>
+  </model>
+</world>"#;
+
+#[test]
+fn sdf_worlds_nested_models_and_static_models_are_read() {
+    let cell = read_sdf(SDF_WORLD).expect("a robot");
+    assert_eq!(cell.name(), "cell");
+    let links: Vec<_> = cell.links().iter().map(|link| (&*link.name, link.frame)).collect();
+    let expected = [
+        ("robot::base", None),
+        ("robot::arm::forearm", Some(0)),
+        ("table::top", None),
+        ("table::leaf", None),
+    ];
+    assert_eq!(links, expected);
+    let joints: Vec<_> = cell.joints().iter().map(|j| (&*j.name, j.kind)).collect();
+    assert_eq!(joints, [("robot::elbow", JointKind::Continuous)]);
+    assert_eq!(cell.mechanism().frames()[0].origin.translation(), DVec3::new(1.0, 2.0, 3.0));
+    let found = placed_vertices(cell, &[0.7]);
+    // The centre of the forearm's sphere is on its axis.
+    assert_has_vertex(&found, "robot::arm::forearm", DVec3::new(1.0, 2.0, 3.0));
+    assert_has_vertex(&found, "table::top", DVec3::new(1.0, 0.0, -5.0));
+}
+
+#[test]
+fn sdf_axes_of_old_versions_are_in_the_frame_of_the_model() {
+    let robot = |version: &str, axis: &str| {
+        let text = format!(
+            "<model name=\"m\"><link name=\"a\"/><link name=\"b\"><pose>0 0 0 0 0 1.5707963267948966</pose>\
+             <collision name=\"c\"><geometry><sphere><radius>1</radius></sphere></geometry></collision></link>\
+             <joint name=\"j\" type=\"prismatic\"><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz>{axis}\
+             </axis></joint></model>"
+        );
+        let robot = read_sdf_of(version, &text).expect("a robot");
+        assert_eq!(robot.joints()[0].limits, None);
+        placed_vertices(robot, &[2.0])
+    };
+    for (version, axis, end) in [
+        ("1.4", "", DVec3::X),
+        ("1.6", "", DVec3::Y),
+        ("1.6", "<use_parent_model_frame>true</use_parent_model_frame>", DVec3::X),
+        ("1.10", "", DVec3::Y),
+    ] {
+        assert_has_vertex(&robot(version, axis), "b", end * 2.0);
+    }
+}
+
+#[test]
+fn unsupported_sdf_elements_are_rejected_with_their_place() {
+    let error_text = |text: &str| read_sdf(text).unwrap_err().to_string();
+    let of_shape = |shape: &str| {
+        error_text(&format!(
+            "<model name=\"m\"><link name=\"l\"><collision name=\"c\"><geometry>\n{shape}</geometry>\
+             </collision></link></model>"
+        ))
+    };
+    for (shape, reason) in [
+        (
+            "<ellipsoid><radii>1 2 3</radii></ellipsoid>",
+            "unsupported geometry ellipsoid; accepted: mesh, box",
+        ),
+        ("<plane/>", "unsupported geometry plane"),
+        ("<sphere/>", "<sphere> has no element radius"),
+        (
+            "<sphere><radius>-1</radius></sphere>",
+            "a sphere has sizes [-1.0]; accepted: finite and positive",
+        ),
+        ("<sphere><radius>1 2</radius></sphere>", "<radius> is \"1 2\"; accepted: a number"),
+        ("<box><size>1 2</size></box>", "<size> is \"1 2\"; accepted: 3 numbers"),
+        ("<mesh><uri>a.stl</uri><submesh/></mesh>", "unsupported element submesh"),
+        ("<mesh/>", "<mesh> has no element uri"),
+    ] {
+        let text = of_shape(shape);
+        assert!(text.contains(&format!("SDF: line 2: link l: {reason}")), "{shape}: {text}");
+        assert!(text.contains("robot.sdf"), "{text}");
+    }
+    let in_model = |text: &str| {
+        error_text(&format!(
+            "<model name=\"m\">\n{text}<link name=\"a\"/><link name=\"b\"/></model>"
+        ))
+    };
+    let joint = |kind: &str, rest: &str| {
+        format!(
+            "<joint name=\"j\" type=\"{kind}\"><parent>a</parent><child>b</child>{rest}</joint>"
+        )
+    };
+    let fixed = joint("fixed", "");
+    let axis = "<axis><xyz expressed_in=\"z\">0 0 1</xyz></axis>";
+    let back = "<joint name=\"k\" type=\"fixed\"><parent>b</parent><child>a</child></joint>";
+    let of_itself = "<frame name=\"f\"><pose relative_to=\"f\"/></frame><link name=\"l\">\
+        <collision name=\"c\"><pose relative_to=\"f\"/><geometry><empty/></geometry></collision></link>";
+    let attached = "<frame name=\"f\" attached_to=\"g\"/><frame name=\"g\" attached_to=\"f\"/>";
+    for (text, reason) in [
+        ("<include><uri>x</uri></include>".into(), "include without a name: unsupported in model"),
+        (joint("ball", ""), "joint j: unsupported type ball; accepted: fixed, revolute"),
+        (joint("revolute", ""), "joint j: missing element axis"),
+        (
+            joint("revolute", "<axis><xyz>0 0 0</xyz></axis>"),
+            "joint j: invalid axis [0.0, 0.0, 0.0]",
+        ),
+        (joint("revolute", axis), "joint j: unknown frame z"),
+        (joint("fixed", "<pose>1 2</pose>"), "joint j: <pose> is \"1 2\"; accepted: 6 numbers"),
+        (fixed.replace("child>b", "child>world"), "joint j: its child is the world"),
+        (fixed.clone() + "<link name=\"j\"/>", "link j: duplicate name"),
+        (fixed.clone() + &fixed.replace("\"j\"", "\"k\""), "link b already is the child"),
+        (fixed.clone() + back, "its joints form a cycle"),
+        (of_itself.into(), "frame f: its pose is relative to itself"),
+        (attached.to_owned() + &fixed.replace("child>b", "child>f"), "it is attached to itself"),
+        (
+            "<model name=\"n\" placement_frame=\"q\"/>".into(),
+            "model n: unsupported placement_frame q",
+        ),
+    ] {
+        let error = in_model(&text);
+        assert!(error.contains("SDF: line 2: ") && error.contains(reason), "{text}: {error}");
+    }
+    assert!(error_text("").contains("0 models and worlds; accepted: one model or one world"));
+    assert!(
+        error_text("<model name=\"m\"/>").contains("none of its 0 links has collision geometry")
+    );
+    for version in ["1", "1.2"] {
+        let error = read_sdf_of(version, "<model name=\"m\"/>").unwrap_err().to_string();
+        assert!(error.contains(&format!("SDF: line 1: unsupported version {version};")), "{error}");
+    }
 }
 
 #[test]

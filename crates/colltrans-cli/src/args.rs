@@ -93,8 +93,8 @@ pub(crate) enum Command {
     Motion(Box<MotionArguments>),
     /// Compute which links of a robot first touch each other or a scene on a path
     ///
-    /// The bounds of the time are proven for the whole path, not for samples. The robot is a URDF or MJCF file. A row of
-    /// the path has one value for each joint, in radians or metres.
+    /// The bounds of the time are proven for the whole path, not for samples. The robot is a URDF, SDF or MJCF file. A row
+    /// of the path has one value for each joint, in radians or metres.
     #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[PATH_NOTES]))]
     Path(Box<PathArguments>),
     /// Compute all directions along which a mesh can leave another, with a proof

@@ -197,11 +197,12 @@ getters!(Robot, |it| {
 
 #[pymethods]
 impl Robot {
-    /// Reads a robot from a URDF or MJCF file, in metres and radians.
+    /// Reads a robot from a URDF, SDF or MJCF file, in metres and radians.
     ///
     /// Joints may be revolute, continuous, prismatic or fixed, and may follow others (``mimic``). Spheres and
     /// capsules are exact. Cylinders are replaced by circumscribed prisms. The links of an MJCF file (MuJoCo) are its
-    /// bodies and the ``world``; other geoms than spheres, capsules, boxes and cylinders are rejected.
+    /// bodies and the ``world``; other geoms than spheres, capsules, boxes and cylinders are rejected. In SDF (Gazebo),
+    /// links of nested models, and of the models of a world, are named ``model::link``; ``mimic`` is not applied.
     ///
     /// Parameters
     /// ----------

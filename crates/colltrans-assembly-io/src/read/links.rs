@@ -1,14 +1,15 @@
 //! Links of a robot: their shapes, and the bodies built from them.
 
 use colltrans::AnyBody;
-use colltrans_assembly::Piece;
+use colltrans_assembly::{AssemblyError, Piece};
 use colltrans_mesh::body::{BodyError, BodyOptions, Loaded};
 use glam::DAffine3;
 
-use super::contents_error;
 use super::files::Source;
 use super::shapes::Primitive;
+use super::{assembly_error, contents_error};
 use crate::error::ReadError;
+use crate::robot::Link;
 
 /// A shape of a link, with its transformation to the frame of the link or to the world.
 pub(super) enum LinkShape {
@@ -60,4 +61,51 @@ pub(super) fn check_hull_names(source: &Source, names: &[&str]) -> Result<(), Re
     let Some(name) = hulls.find(|name| !names.contains(&name.as_str())) else { return Ok(()) };
     let reason = format!("cannot use the hull of unknown link {name}; links: {}", names.join(", "));
     Err(contents_error(source.path, "links", reason))
+}
+
+/// Builds a link of these shapes, in the frame that carries it. Adds notes on its bodies.
+pub(super) fn build_link(
+    source: &Source,
+    name: &str,
+    frame: Option<usize>,
+    shapes: &[LinkShape],
+    notes: &mut Vec<String>,
+) -> Result<Link, ReadError> {
+    let mut bodies = Vec::new();
+    let (takes_hull, mut is_hull) = (source.options.takes_hull(name), false);
+    let mut dent: Option<f64> = None;
+    for shape in shapes {
+        let options = source.options.body_options().with_hull(takes_hull);
+        let loaded = shape.body(&options).map_err(|refused| {
+            assembly_error(source.path)(AssemblyError::Part { part: name.into(), source: refused })
+        })?;
+        // If the hull equals the mesh, there is no note.
+        is_hull |= takes_hull && !loaded.notes.is_empty();
+        dent = dent.into_iter().chain(loaded.dent()).reduce(f64::max);
+        let whose = if takes_hull { " as its convex hull" } else { "" };
+        notes.extend(loaded.notes.iter().map(|said| format!("link {name}{whose}: {said}")));
+        if let LinkShape::Primitive(primitive, _) = shape {
+            notes.extend(primitive.replacement_note().map(|said| format!("link {name}: {said}")));
+        }
+        bodies.push(loaded.body);
+    }
+    Ok(Link { name: name.into(), frame, bodies, is_hull, dent })
+}
+
+/// Checks that a robot has a body, and no missing meshes unless they are skipped, which adds notes.
+pub(super) fn check_links(
+    source: &Source,
+    links: &[Link],
+    missing: Vec<String>,
+    notes: &mut Vec<String>,
+) -> Result<(), ReadError> {
+    if !missing.is_empty() && !source.options.skip_missing {
+        return Err(ReadError::MissingMeshes { path: source.path.into(), missing });
+    }
+    notes.extend(missing.iter().map(|file| format!("{file} not found; left out")));
+    if links.iter().all(|link| link.bodies.is_empty()) {
+        let holds = format!("none of its {} links has collision geometry", links.len());
+        return Err(ReadError::NoParts { path: source.path.into(), holds });
+    }
+    Ok(())
 }

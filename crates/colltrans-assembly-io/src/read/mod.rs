@@ -19,6 +19,8 @@ mod mjcf;
 #[cfg(feature = "files")]
 mod robot;
 #[cfg(feature = "files")]
+mod sdf;
+#[cfg(feature = "files")]
 mod shapes;
 #[cfg(feature = "files")]
 mod slicer;
@@ -222,9 +224,10 @@ fn unknown_source(path: &Path) -> ReadError {
     if is_step { ReadError::Step { path } } else { ReadError::UnknownSource { path } }
 }
 
-/// Reads a robot from a URDF or MJCF file: links with their bodies, and joints. The root element selects the format.
+/// Reads a robot from a URDF, SDF or MJCF file: links with their bodies, and joints. The root element selects the format.
 ///
-/// The links of an MJCF file are its bodies and the `world`. Its geoms are spheres, capsules, boxes and cylinders.
+/// The links of an MJCF file are its bodies and the `world`. Its geoms are spheres, capsules, boxes and cylinders. Links
+/// and joints of nested SDF models, and of the models of a world, are named `model::link`.
 ///
 /// # Errors
 /// [`ReadError`] if a file cannot be read, with the file and the place, if a joint has not exactly one degree

@@ -1,4 +1,5 @@
-//! Reads a URDF robot with its joints: links with bodies, each in the frame of its link.
+//! Reads a URDF robot with its joints: links with bodies, each in the frame of its link. Other formats have readers of
+//! their own.
 //!
 //! - The frame of a link is that of the joint above it, or the world.
 //! - The angles of the file are converted once to matrices, whose entries define the frames from then on.
@@ -12,19 +13,20 @@ use colltrans::motion::path::{Frame, Joint, Mechanism};
 use glam::{DAffine3, DVec3};
 
 use super::files::Source;
-use super::links::{LinkShape, check_hull_names};
+use super::links::{build_link, check_hull_names, check_links};
 use super::urdf::{self, PartGatherer};
-use super::{assembly_error, contents_error, mjcf};
+use super::{contents_error, mjcf, sdf};
 use crate::error::ReadError;
-use crate::robot::{JointKind, Link, Mimic, Robot, RobotJoint};
-use colltrans_assembly::AssemblyError;
+use crate::robot::{JointKind, Mimic, Robot, RobotJoint};
 use colltrans_mesh::xml::Element;
 
-/// Reads a robot from a URDF or MJCF file. The root element selects the format.
+/// Reads a robot from a URDF, SDF or MJCF file. The root element selects the format.
 pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
     let (element, bytes) = urdf::parse_root(&source)?;
-    if element.name == "mujoco" {
-        return mjcf::read_robot(source, &element, bytes);
+    match element.name.as_str() {
+        "mujoco" => return mjcf::read_robot(source, &element, bytes),
+        "sdf" => return sdf::read_robot(source, &element, bytes),
+        _ => {}
     }
     urdf::check_robot(&source, &element)?;
     let joints = urdf::read_joints(&source, &element)?;
@@ -64,41 +66,10 @@ pub(super) fn read_robot(source: Source) -> Result<Robot, ReadError> {
     for link in element.children_named("link") {
         let name = urdf::element_name(&source, link)?;
         let shapes = gathered.link_shapes(link, name, DAffine3::IDENTITY)?;
-        let mut bodies = Vec::new();
-        let (takes_hull, mut is_hull) = (source.options.takes_hull(name), false);
-        let mut dent: Option<f64> = None;
-        for shape in shapes {
-            let options = source.options.body_options().with_hull(takes_hull);
-            let loaded = shape.body(&options).map_err(|refused| {
-                assembly_error(source.path)(AssemblyError::Part {
-                    part: name.into(),
-                    source: refused,
-                })
-            })?;
-            // If the hull equals the mesh, there is no note.
-            is_hull |= takes_hull && !loaded.notes.is_empty();
-            dent = dent.into_iter().chain(loaded.dent()).reduce(f64::max);
-            let whose = if takes_hull { " as its convex hull" } else { "" };
-            notes.extend(loaded.notes.iter().map(|said| format!("link {name}{whose}: {said}")));
-            if let LinkShape::Primitive(primitive, _) = shape {
-                notes.extend(
-                    primitive.replacement_note().map(|said| format!("link {name}: {said}")),
-                );
-            }
-            bodies.push(loaded.body);
-        }
         let frame = tree.frame_of_link[name];
-        links.push(Link { name: name.into(), frame, bodies, is_hull, dent });
+        links.push(build_link(&source, name, frame, &shapes, &mut notes)?);
     }
-    let PartGatherer { missing, .. } = gathered;
-    if !missing.is_empty() && !source.options.skip_missing {
-        return Err(ReadError::MissingMeshes { path: source.path.into(), missing });
-    }
-    notes.extend(missing.iter().map(|file| format!("{file} not found; left out")));
-    if links.iter().all(|link| link.bodies.is_empty()) {
-        let holds = format!("none of its {} links has collision geometry", links.len());
-        return Err(ReadError::NoParts { path: source.path.into(), holds });
-    }
+    check_links(&source, &links, gathered.missing, &mut notes)?;
     let name = element.get("name").unwrap_or_default().to_owned();
     Ok(Robot { name, links, joints, mechanism, notes, files: source.into_files() })
 }

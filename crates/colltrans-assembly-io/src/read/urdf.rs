@@ -110,10 +110,7 @@ impl<'a> PartGatherer<'a> {
         name: &str,
         world: DAffine3,
     ) -> Result<Vec<LinkShape>, ReadError> {
-        let which = match self.source.options.geometry {
-            Geometry::Collision => "collision",
-            Geometry::Visual => "visual",
-        };
+        let which = self.geometry_name();
         let mut shapes = Vec::new();
         for shown in link.children_named(which) {
             let refused =
@@ -123,29 +120,47 @@ impl<'a> PartGatherer<'a> {
             let shape =
                 shape.ok_or_else(|| refused(format!("a {which} element has no geometry")))?;
             if shape.name == "mesh" {
-                shapes.extend(self.read_mesh(shape, name, at)?.map(LinkShape::Mesh));
+                let filename = shape.required("filename").map_err(refused)?;
+                let scale = shape.numbers::<3>("scale").map_err(refused)?.unwrap_or([1.0; 3]);
+                shapes.extend(self.read_mesh(filename, scale, name, at)?.map(LinkShape::Mesh));
             } else {
                 let primitive = primitive(shape)
                     .map_err(|reason| refused(format!("line {}: {reason}", shape.line)))?;
-                self.budget.count_placed().map_err(refused)?;
-                self.budget.count_facets(primitive.face_count()).map_err(refused)?;
-                shapes.push(LinkShape::Primitive(primitive, at));
+                shapes.push(self.primitive_shape(primitive, at).map_err(refused)?);
             }
         }
         Ok(shapes)
     }
 
-    /// Reads a mesh of a link. `None` if the file does not exist, which is recorded.
-    fn read_mesh(
+    /// Returns the name of the elements with the geometry to read.
+    pub(super) const fn geometry_name(&self) -> &'static str {
+        match self.source.options.geometry {
+            Geometry::Collision => "collision",
+            Geometry::Visual => "visual",
+        }
+    }
+
+    /// Returns a primitive shape of a link at a pose, and counts it.
+    pub(super) fn primitive_shape(
         &mut self,
-        mesh: &Element,
+        primitive: Primitive,
+        at: DAffine3,
+    ) -> Result<LinkShape, String> {
+        self.budget.count_placed()?;
+        self.budget.count_facets(primitive.face_count())?;
+        Ok(LinkShape::Primitive(primitive, at))
+    }
+
+    /// Reads a mesh of a link. `None` if the file does not exist, which is recorded.
+    pub(super) fn read_mesh(
+        &mut self,
+        filename: &str,
+        scale: [f64; 3],
         link: &str,
         at: DAffine3,
     ) -> Result<Option<Piece>, ReadError> {
         let refused =
             |reason: String| contents_error(self.source.path, format!("link {link}"), reason);
-        let filename = mesh.required("filename").map_err(refused)?;
-        let scale = mesh.numbers::<3>("scale").map_err(refused)?.unwrap_or([1.0; 3]);
         let Some((file, bytes)) = find_mesh(self.source, filename)? else {
             self.missing.push(filename.to_owned());
             return Ok(None);
@@ -382,7 +397,8 @@ fn joint_position<'a>(
 
 /// Opens a mesh by the reference in the robot.
 fn find_mesh(source: &Source, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
-    if let Some(rest) = name.strip_prefix("package://") {
+    let package = ["package://", "model://"].into_iter().find_map(|start| name.strip_prefix(start));
+    if let Some(rest) = package {
         // Some files have an empty package name, as in `package:///meshes/a.stl`.
         return find_in_packages(source, rest.trim_start_matches('/'));
     }

@@ -9,7 +9,7 @@ use super::{factor, length, proof};
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "they are flags of the command line")]
 pub(crate) struct PathArguments {
-    /// The robot: a URDF file (.urdf) or an MJCF file (.xml)
+    /// The robot: a URDF (.urdf), SDF (.sdf) or MJCF file (.xml)
     pub(crate) robot: PathBuf,
     /// The path: rows of joint values in radians and metres, CSV or JSON; `-` for standard input
     #[arg(value_name = "PATH")]

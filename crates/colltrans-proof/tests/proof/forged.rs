@@ -5,6 +5,7 @@ use colltrans_convex::{
 };
 use colltrans_motion::{Motion, MotionCast};
 use colltrans_proof::ProofFile;
+use colltrans_scene::{Obstacles, SceneQuery};
 use colltrans_solid::{AsSolid, Solid, SolidOptions, StartOverlap};
 use colltrans_testkit::bodies::{at_xyz as pose, cube};
 use colltrans_testkit::oracle::proofs::checkers::{RationalChecker, Verdict, verify};
@@ -49,6 +50,33 @@ fn separation_from_afar(far: f64) -> Value {
     let cast = cast.expect("a query");
     let outcome = cast.first_contact().expect("an answer");
     serde_json::from_str(&ProofFile::of_outcome(&cast, &outcome).to_json()).expect("JSON")
+}
+
+/// The tree of several pieces has another order than the facets of the file.
+#[test]
+fn near_points_in_scene_are_in_facets_of_file() {
+    let mut fractions = start_fractions();
+    let block = |high| ConvexPolyhedron::cuboid(DVec3::ZERO, high).expect("a cuboid");
+    let [low, high] = [DVec3::new(4.0, 2.0, 1.0), DVec3::new(2.0, 2.0, 3.0)].map(block);
+    for radius in [0.0, 0.25] {
+        let step = Solid::from_pieces([&low, &high]).and_then(|step| step.rounded(radius));
+        let step = step.expect("a step");
+        let mut room = Obstacles::new();
+        room.insert(step.clone(), Pose::IDENTITY);
+        let query = SceneQuery::new(step.at(pose(3.0, 0.5, 2.0)), &room).expect("a query");
+        let nearest = ProofFile::of_nearest(&query).expect("an answer").expect("an obstacle");
+        let within = ProofFile::of_within(&query, 1.5).expect("an answer");
+        for (file, near) in [(nearest, "nearest/near"), (within, "within/closer/0/1")] {
+            let mut file: Value = serde_json::from_str(&file.to_json()).expect("JSON");
+            for verdict in verdicts(&file, &mut fractions) {
+                assert!(verdict.accepts(), "{verdict:?}: {file}");
+            }
+            let facet = format!("/statement/{near}/solid/points/triangles/1");
+            let facet = file.pointer_mut(&facet).expect("a facet");
+            *facet = json!(0);
+            assert_refused(&file, &mut fractions);
+        }
+    }
 }
 
 #[test]

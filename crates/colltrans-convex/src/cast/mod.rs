@@ -463,7 +463,7 @@ impl Cast<'_> {
         &self,
         observer: &mut O,
     ) -> Result<ContactRange, QueryError> {
-        contact_range_by_casts(self, |cast| cast.first_contact_observed(observer))
+        contact_range_by_casts(self, first_and_last(observer))
     }
 
     /// Computes [`Self::clearance`] and reports each step to an observer.
@@ -474,7 +474,7 @@ impl Cast<'_> {
         &self,
         observer: &mut O,
     ) -> Result<Clearance, QueryError> {
-        clearance_by_casts(self, |cast| cast.first_contact_observed(observer))
+        clearance_by_casts(self, first_and_last(observer))
     }
 
     /// Computes how far the moving body must move back, against the direction, until it no longer overlaps
@@ -494,7 +494,24 @@ impl Cast<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn directional_depth(&self) -> Result<DirectionalDepth, QueryError> {
-        directional_depth_by_casts(self, Self::first_contact)
+        directional_depth_by_casts(self, first_and_last(&mut NoObserver))
+    }
+}
+
+/// Returns a function that runs the casts of a query along a direction and then against it. With [`Solver::Cta`], the
+/// second one starts from the contact of the first one.
+fn first_and_last<'a, O: Observer>(
+    observer: &mut O,
+) -> impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError> {
+    let mut last = WarmStart::Nothing;
+    move |cast| {
+        if cast.options.solver != Solver::Cta {
+            return cast.first_contact_observed(observer);
+        }
+        let mut next = TrackerUpdate::default();
+        let outcome = cast.search_first_contact(&Focus::NONE, &last, &mut next, observer);
+        last = next.start.opposite();
+        outcome
     }
 }
 
@@ -517,11 +534,11 @@ impl CastBody for ConvexPolyhedron {
     }
 
     fn contact_range(cast: &Cast<'_>) -> Result<ContactRange, QueryError> {
-        contact_range_by_casts(cast, Cast::first_contact)
+        contact_range_by_casts(cast, first_and_last(&mut NoObserver))
     }
 
     fn clearance(cast: &Cast<'_>) -> Result<Clearance, QueryError> {
-        clearance_by_casts(cast, Cast::first_contact)
+        clearance_by_casts(cast, first_and_last(&mut NoObserver))
     }
 
     fn intersects(cast: &Cast<'_>) -> Result<Intersection, QueryError> {

@@ -229,7 +229,7 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
     /// yield neither.
     fn enclosure_from_features(&mut self, last: &WarmStart) -> Option<Enclosure> {
         match last {
-            WarmStart::Nothing | WarmStart::WithMinGap { .. } => None,
+            WarmStart::Nothing | WarmStart::Opposite { .. } | WarmStart::WithMinGap { .. } => None,
             WarmStart::Contact(portal) => {
                 let walk = portal::walk_from_last(&mut self.context, portal);
                 self.enclosure_of_walk(walk)
@@ -355,11 +355,18 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
         (margin >= least).then_some(Enclosure::Separated(line))
     }
 
-    /// Computes the start of portal refinement, from the region of the previous solution if possible.
+    /// Computes the start of portal refinement, from the region of the previous solution or from the opposite contact
+    /// if possible.
     fn narrowed_start(&mut self, region: Region, last: &WarmStart) -> NarrowedStart {
         if let Some(focus) = self.region_focus(region, last) {
             self.context.watch.steps.started_from = StartedFrom::Region;
             return self.start_by_cta(MinimisationStart::Region(focus));
+        }
+        if let WarmStart::Opposite { normal } = last
+            && self.narrowing.start != cta::options::Start::Ellipsoids
+            && let Some(guess) = solution_guess::opposite_solution(&mut self.context, *normal)
+        {
+            return self.start_by_cta(MinimisationStart::Region(guess));
         }
         match self.narrowing.start {
             cta::options::Start::Center => self.start_by_cta(MinimisationStart::Center),
@@ -425,7 +432,9 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
     fn region_focus(&self, region: Region, last: &WarmStart) -> Option<LastSolution> {
         let setting = self.context.difference.setting;
         let (touching, normals, pair) = match last {
-            WarmStart::Nothing | WarmStart::WithMinGap { .. } => return None,
+            WarmStart::Nothing | WarmStart::Opposite { .. } | WarmStart::WithMinGap { .. } => {
+                return None;
+            }
             WarmStart::Contact(portal) => {
                 let touching = setting.weighted_points(&portal.pairs, &portal.weights);
                 (touching, portal.normals, portal.pairs[0])

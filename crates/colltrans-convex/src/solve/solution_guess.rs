@@ -40,13 +40,37 @@ const BETWEEN_SHARE: f64 = 0.05;
 /// Minimum cosine between the normal of a large face and the direction at which the face is tried.
 const MIN_FACE_COSINE: f64 = 0.05;
 
+/// Maximum number of vertices of a body that [`inside_box`] treats.
+const MAX_BOX_VERTICES: usize = 32;
+
+/// Share of the way to the centre by which [`inside_box`] moves a point.
+const INSIDE_SHARE: f64 = 0.15;
+
 /// Least `delta` on bodies with rims, as a multiple of the radius over the number of vertices: about a side of a rim.
 const RIM_EDGES: f64 = 8.0;
 
 /// Guesses the solution. `None` if the bodies seem to miss each other.
 pub(super) fn guessed_solution<O: Observer>(context: &mut Context<O>) -> Option<LastSolution> {
-    let (NormalGuess { normal: first, .. }, curvatures) =
-        NormalGuess::with_curvatures(&context.difference);
+    let guess = NormalGuess::with_curvatures(&context.difference);
+    solution_near(context, guess)
+}
+
+/// Guesses the solution from the normal of the contact against the direction (frame of the moving body). `None` if
+/// the bodies seem to miss each other.
+pub(super) fn opposite_solution<O: Observer>(
+    context: &mut Context<O>,
+    normal: DVec3,
+) -> Option<LastSolution> {
+    let other = context.difference.moving_normal_to_shadow(normal);
+    let guess = NormalGuess::opposite_with_curvatures(&context.difference, other);
+    solution_near(context, guess)
+}
+
+/// Guesses the solution from a guess of its normal.
+fn solution_near<O: Observer>(
+    context: &mut Context<O>,
+    (NormalGuess { normal: first, .. }, curvatures): (NormalGuess, [DMat2; 2]),
+) -> Option<LastSolution> {
     if first.z <= 0.0 {
         return None;
     }
@@ -119,13 +143,20 @@ fn solution_on_large_face<O: Observer>(
     }
     let (body, normal, support) = found?;
     let difference = &context.difference;
-    let touching = difference.points_on_line(support.pair, body, highest);
+    let [p, q] = difference.points_on_line(support.pair, body, highest);
     Some(LastSolution {
-        touching,
+        touching: [inside_box(setting.moving, p), inside_box(setting.fixed, q)],
         half_side: mean_edge(difference),
         normal: difference.to_moving_frame(normal),
         pair: Some(support.pair),
     })
+}
+
+/// Moves a point towards the centre of a body with few vertices. Sections through its boundary may miss those of the
+/// other body, if an edge touches instead of the face. Its cells are large, so that a shift returns to the contact.
+fn inside_box(body: &ConvexPolyhedron, point: DVec3) -> DVec3 {
+    let is_box = body.vertices().len() <= MAX_BOX_VERTICES;
+    if is_box { point.lerp(body.inertia().center, INSIDE_SHARE) } else { point }
 }
 
 /// Search for support points of `M` near the line.

@@ -34,6 +34,12 @@ pub(crate) enum WarmStart {
         /// Vertex pair of `M` that is lowest along it.
         pair: VertexPair,
     },
+    /// The cast was against the direction, and met. With [`Solver::Cta`](crate::Solver::Cta), the last contact of a
+    /// query starts from the first one.
+    Opposite {
+        /// Normal of this contact, in the frame of the moving body.
+        normal: DVec3,
+    },
     /// The cast had a minimum gap.
     WithMinGap {
         /// Normal of the plane that bounded the translation (setting frame).
@@ -41,4 +47,14 @@ pub(crate) enum WarmStart {
         /// Vertex pairs at which the bodies were nearest.
         pairs: NearestPairs,
     },
+}
+
+impl WarmStart {
+    /// Returns the start of the cast against the direction.
+    pub(crate) fn opposite(&self) -> Self {
+        match self {
+            Self::Contact(portal) => Self::Opposite { normal: portal.normals[0] },
+            _ => Self::Nothing,
+        }
+    }
 }

@@ -2,8 +2,8 @@
 //! test, and then the one portal that makes the certificate. Work is counted, never timed.
 
 use colltrans_convex::{
-    Cast, Contact, ConvexPolyhedron, Focus, Options, Outcome, Pose, Solver, StartedFrom, Tracker,
-    cta,
+    Cast, Contact, ContactRange, ConvexPolyhedron, Focus, Options, Outcome, Pose, Solver,
+    StartedFrom, Tracker, cta,
 };
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{
@@ -120,6 +120,36 @@ fn guessed_solution_saves_planar_problems_but_no_proof() {
             for pivots in pivots.map(mean) {
                 assert!(pivots < 3.0, "{name} {n}: {pivots} portals");
             }
+        }
+    }
+}
+
+#[test]
+fn last_contact_starts_from_the_first_one() {
+    for n in [200, 3_200] {
+        for (name, body) in kinds(n) {
+            let mut random = Random::new(15);
+            let [mut alone, mut after, mut pivots, mut contacts] = [0; 4];
+            for _ in 0..SETTINGS {
+                let cast = cast(&body, &mut random).with_solver(Solver::Cta);
+                let ContactRange::Contact { first, last } = cast.contact_range().expect("a range")
+                else {
+                    continue;
+                };
+                let [entry, known] = [cast, cast.reversed()].map(|cast| {
+                    contact(cast.first_contact().expect("an answer")).expect("it meets")
+                });
+                assert_eq!((first.certificate, first.steps), (entry.certificate, entry.steps));
+                assert!(last.steps.planar_problems > 0, "{name}: {:?}", last.steps);
+                contacts += 1;
+                alone += known.steps.planar_problems;
+                after += last.steps.planar_problems;
+                pivots += last.steps.pivots;
+                let [a, b] = [last.certificate, known.certificate];
+                assert!(a.lower <= b.upper && b.lower <= a.upper, "{name}: {a:?} {b:?}");
+            }
+            assert!(contacts > 80 && 4 * after < 3 * alone, "{name} {n}: {after} of {alone}");
+            assert!(pivots < 3 * contacts, "{name} {n}: {pivots} portals in {contacts}");
         }
     }
 }

@@ -147,11 +147,11 @@ impl CastRecord {
         match range {
             ContactRange::Contact { first, last } => Self::with_outcome(
                 Ending::Contact,
-                ContactRecord::of_contact(first, cast).with_exit(last.exit()),
+                ContactRecord::of_contact(first, cast).with_last(last),
             ),
             ContactRange::Grazing { first, last } => {
                 let contact = ContactRecord::of_grazing(first, cast);
-                Self::with_outcome(Ending::Grazing, contact.with_exit(last.contact.exit()))
+                Self::with_outcome(Ending::Grazing, contact.with_last(&last.contact))
             }
             ContactRange::Separated(separated) => {
                 Self::with_outcome(Ending::Separated, ContactRecord::of_separated(separated, cast))
@@ -231,6 +231,16 @@ impl ContactRecord {
             steps: Some(*steps),
             ..Self::default()
         }
+    }
+
+    /// Adds the last contact. With [`Solver::Cta`], the steps count both contacts, because the last one starts from the
+    /// first one.
+    fn with_last(self, last: &Contact) -> Self {
+        let mut record = self.with_exit(last.exit());
+        if let Some(steps) = record.steps.as_mut().filter(|_| last.solver == Solver::Cta) {
+            *steps += last.steps;
+        }
+        record
     }
 
     fn with_exit(self, exit: Bounded) -> Self {

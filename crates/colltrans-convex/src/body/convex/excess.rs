@@ -353,6 +353,14 @@ impl ConvexPolyhedron {
         Some(others.iter().fold(first, farther))
     }
 
+    /// Returns the outward unit normal of a face (body frame) if the face is large. Three successive corners of such a
+    /// face are nearly collinear. `None` for other faces.
+    #[inline]
+    pub(crate) fn large_face_normal(&self, face: u32) -> Option<DVec3> {
+        let found = self.large_faces.binary_search_by_key(&face, |large| large.face).ok()?;
+        Some(self.large_faces[found].normal)
+    }
+
     /// Measures the flatness of the polygons, and selects the large faces.
     ///
     /// On a body that is scanned and has few polygons, all polygons count as large, but not its triangles. This

@@ -21,7 +21,9 @@ const MAX_PIECES: usize = super::MAX_STEPS as usize + 5;
 /// The linear programme and its optimum. Levels are relative to the middle of all levels.
 #[derive(Debug, Clone)]
 pub(super) struct LowerBound {
-    pieces: [LinearPiece; MAX_PIECES],
+    constraints: [Constraint; MAX_PIECES],
+    /// Normals of the pieces. They are read only at the end, therefore they are separate.
+    normals: [DVec3; MAX_PIECES],
     count: usize,
     basis: [usize; 3],
     /// Inverse of the matrix with the columns `(weight_i, gradient_i)` of the basis.
@@ -30,6 +32,20 @@ pub(super) struct LowerBound {
     pub(super) optimum: DVec2,
     /// Least feasible `t`: the lower bound of `phi`, without the constant of the section pair.
     pub(super) least_t: f64,
+}
+
+/// Constraint `weight * t >= value + gradient . (X, Y)` of a piece.
+#[derive(Debug, Clone, Copy, Default)]
+struct Constraint {
+    bound: Affine,
+    weight: f64,
+}
+
+impl Constraint {
+    /// Returns `(weight, gradient)`.
+    fn column(&self) -> DVec3 {
+        DVec3::new(self.weight, self.bound.gradient.x, self.bound.gradient.y)
+    }
 }
 
 /// State of the programme after a piece was added.
@@ -46,19 +62,21 @@ impl LowerBound {
     /// Builds the programme over the rectangle from `low` to `high`, with the constant piece `floor`. Its first
     /// optimum is at `low`.
     pub(super) fn new([low, high]: [DVec2; 2], floor: LinearPiece) -> Self {
-        let half_plane = |value, gradient| LinearPiece {
-            bound: Affine { value, gradient },
-            weight: 0.0,
-            normal: DVec3::ZERO,
-        };
-        let mut pieces = [LinearPiece::default(); MAX_PIECES];
-        pieces[0] = floor;
-        pieces[1] = half_plane(low.x, DVec2::NEG_X);
-        pieces[2] = half_plane(low.y, DVec2::NEG_Y);
-        pieces[3] = half_plane(-high.x, DVec2::X);
-        pieces[4] = half_plane(-high.y, DVec2::Y);
+        let half_plane =
+            |value, gradient| Constraint { bound: Affine { value, gradient }, weight: 0.0 };
+        let mut constraints = [Constraint::default(); MAX_PIECES];
+        constraints[..5].copy_from_slice(&[
+            Constraint { bound: floor.bound, weight: floor.weight },
+            half_plane(low.x, DVec2::NEG_X),
+            half_plane(low.y, DVec2::NEG_Y),
+            half_plane(-high.x, DVec2::X),
+            half_plane(-high.y, DVec2::Y),
+        ]);
+        let mut normals = [DVec3::ZERO; MAX_PIECES];
+        normals[0] = floor.normal;
         let mut bound = Self {
-            pieces,
+            constraints,
+            normals,
             count: 5,
             basis: [0, 1, 2],
             inverse: DMat3::IDENTITY,
@@ -72,7 +90,9 @@ impl LowerBound {
     /// Adds a piece and pivots until no piece cuts off the optimum. The levels of the piece have the same
     /// origin as the rectangle.
     pub(super) fn add_piece(&mut self, piece: LinearPiece) -> BoundStatus {
-        self.pieces[self.count] = piece;
+        let LinearPiece { bound, weight, normal } = piece;
+        self.constraints[self.count] = Constraint { bound, weight };
+        self.normals[self.count] = normal;
         self.count += 1;
         // Each pivot raises `t` or, in a tie, leaves it. The limit ends a cycle of ties.
         for _ in 0..2 * self.count {
@@ -87,7 +107,7 @@ impl LowerBound {
     /// Returns the greatest value of the pieces of positive weight at the levels `at`: a lower bound of `phi`
     /// there.
     pub(super) fn lower_bound_at(&self, at: DVec2) -> f64 {
-        let pieces = self.pieces[..self.count].iter().filter(|piece| piece.weight > 0.0);
+        let pieces = self.constraints[..self.count].iter().filter(|piece| piece.weight > 0.0);
         pieces
             .map(|piece| piece.bound.value + piece.bound.gradient.dot(at))
             .fold(f64::NEG_INFINITY, f64::max)
@@ -103,17 +123,17 @@ impl LowerBound {
     /// Returns the sum of the basis' normals with these multipliers.
     fn weighted_normal(&self, multipliers: DVec3) -> DVec3 {
         let terms = self.basis.iter().zip(multipliers.to_array());
-        terms.map(|(&i, m)| self.pieces[i].normal * m).sum()
+        terms.map(|(&i, m)| self.normals[i] * m).sum()
     }
 
     /// Returns the matrix with the columns `(weight_i, gradient_i)` of the basis.
     fn basis_matrix(&self) -> DMat3 {
-        let [i, j, k] = self.basis.map(|i| constraint_column(&self.pieces[i]));
+        let [i, j, k] = self.basis.map(|i| self.constraints[i].column());
         DMat3::from_cols(i, j, k)
     }
 
     /// Returns the difference of a piece and the optimum; positive if the piece cuts it off.
-    fn piece_violation(&self, piece: &LinearPiece) -> f64 {
+    fn piece_violation(&self, piece: &Constraint) -> f64 {
         piece.bound.value + piece.bound.gradient.dot(self.optimum) - piece.weight * self.least_t
     }
 
@@ -122,7 +142,7 @@ impl LowerBound {
     fn most_violated_piece(&self) -> Option<usize> {
         let mut worst = None;
         let mut most = 0.0;
-        for (index, piece) in self.pieces[..self.count].iter().enumerate() {
+        for (index, piece) in self.constraints[..self.count].iter().enumerate() {
             let violation = self.piece_violation(piece);
             if violation > most && !self.basis.contains(&index) {
                 let size = piece.bound.value.abs()
@@ -143,7 +163,7 @@ impl LowerBound {
     /// Returns the normal of the contradiction if no piece can leave the basis.
     fn pivot_into_basis(&mut self, entering: usize) -> Result<(), DVec3> {
         let multipliers = self.inverse * DVec3::X;
-        let entering_column = constraint_column(&self.pieces[entering]);
+        let entering_column = self.constraints[entering].column();
         let rates = self.inverse * entering_column;
         // Bound on the rounding error of a rate.
         let noise = |slot| noise::SECTION * self.inverse.row(slot).abs().dot(entering_column.abs());
@@ -158,11 +178,11 @@ impl LowerBound {
             }
         }
         let Some(slot) = leaving else {
-            return Err(self.pieces[entering].normal - self.weighted_normal(rates));
+            return Err(self.normals[entering] - self.weighted_normal(rates));
         };
         self.basis[slot] = entering;
         self.replace_inverse_column(slot, rates);
-        let values = DVec3::from_array(self.basis.map(|i| self.pieces[i].bound.value));
+        let values = DVec3::from_array(self.basis.map(|i| self.constraints[i].bound.value));
         let dual_values = self.inverse.transpose() * values;
         self.least_t = dual_values.x;
         self.optimum = -DVec2::new(dual_values.y, dual_values.z);
@@ -183,9 +203,4 @@ impl LowerBound {
             |c: usize| (self.inverse.col(c) * kept) - others * pivot_row[c] + unit * pivot_row[c];
         self.inverse = DMat3::from_cols(column(0), column(1), column(2));
     }
-}
-
-/// Returns `(weight, gradient)` of a piece.
-fn constraint_column(piece: &LinearPiece) -> DVec3 {
-    DVec3::new(piece.weight, piece.bound.gradient.x, piece.bound.gradient.y)
 }

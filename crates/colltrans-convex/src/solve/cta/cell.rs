@@ -257,7 +257,7 @@ impl ContactCell {
         if boundary.len() > MAX_FACE_SIDES {
             return None;
         }
-        let corner = |h: u32| contact.face_corner(side, topology.origin(h));
+        let corner = |h: u32| contact.face_corner(side, topology.half_edge(h).origin);
         let first = corner(boundary.start);
         let mut from = first;
         for h in boundary.clone() {

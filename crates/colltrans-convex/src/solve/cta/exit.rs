@@ -32,6 +32,9 @@ const MAX_FEATURE_STEPS: usize = 40;
 /// Maximum absolute value of each lateral part of a normal with `n . d = 1` in the linear programme.
 const MAX_LATERAL_PART: f64 = 1e3;
 
+/// Maximum number of corners of a face of which successive corners are chosen around the line.
+const MAX_SUCCESSIVE_CORNERS: u32 = 8;
+
 /// Sine of the angle between two edges up to which they count as parallel.
 const MIN_SINE: f64 = 1e-8;
 
@@ -55,8 +58,8 @@ pub(super) struct SolvedContact {
 enum CommonNormal {
     /// A normal with `n . d = 1` that supports both bodies.
     Normal(DVec3),
-    /// The only possible normal does not support a body. Faces of both bodies, by half-edges, on at least one
-    /// of which the body extends beyond the plane.
+    /// The only possible normal does not support a body. A half-edge of each body. At least one body extends beyond
+    /// the plane along this edge.
     Unsupported([u32; 2]),
     /// The features do not decide.
     Undecided,
@@ -77,8 +80,8 @@ pub(super) enum ExitResult {
 /// boundary of this face. Beyond them it continues in these faces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Descent {
-    /// Face of each body, by a half-edge.
-    pub(super) faces: [u32; 2],
+    /// Edge of each body, whose faces may contain the contact.
+    pub(super) edges: [u32; 2],
     /// Level of each body.
     pub(super) levels: [f64; 2],
 }
@@ -114,8 +117,8 @@ impl ExitTest<'_, '_> {
         };
         let normal = match self.common_normal(features) {
             CommonNormal::Normal(normal) => normal,
-            CommonNormal::Unsupported(faces) => {
-                return ExitResult::Falls(self.descent_over(features, faces, levels));
+            CommonNormal::Unsupported(edges) => {
+                return ExitResult::Falls(self.descent_along(features, edges, levels));
             }
             CommonNormal::Undecided => return ExitResult::Missed,
         };
@@ -133,20 +136,20 @@ impl ExitTest<'_, '_> {
         })
     }
 
-    /// Returns where the contact continues on the faces of these half-edges. A section at the level of a vertex lies
+    /// Returns where the contact continues on the faces of these edges. A section at the level of a vertex lies
     /// just above the vertex. Therefore this level is kept if the half-edge leads upwards, and else replaced by the
     /// next lower number.
-    fn descent_over(&self, features: [Feature; 2], faces: [u32; 2], levels: [f64; 2]) -> Descent {
+    fn descent_along(&self, features: [Feature; 2], edges: [u32; 2], levels: [f64; 2]) -> Descent {
         let level = |body: usize| match features[body] {
             Feature::Vertex(v) => {
                 let side = &self.sides[body];
                 let level = side.vertex_level(v);
-                let is_up = side.vertex_level(side.topology.target(faces[body])) > level;
+                let is_up = side.vertex_level(side.topology.target(edges[body])) > level;
                 if is_up { level } else { level.next_down() }
             }
             Feature::Edge(_) | Feature::Face(_) => levels[body],
         };
-        Descent { faces, levels: [level(0), level(1)] }
+        Descent { edges, levels: [level(0), level(1)] }
     }
 
     /// Finds the features that touch in the best point. `None` for separated sections, for an edge whose face is
@@ -262,6 +265,10 @@ impl ExitTest<'_, '_> {
     /// Returns the outward normal of a face in the setting frame, of any length.
     fn face_normal(&self, body: usize, half_edge: u32) -> DVec3 {
         let topology = self.sides[body].topology;
+        let polyhedron = if body == 0 { self.setting.moving } else { self.setting.fixed };
+        if let Some(normal) = polyhedron.large_face_normal(topology.half_edge(half_edge).face) {
+            return *self.rotation_matrix(body) * normal;
+        }
         let third = topology.target(topology.next(half_edge));
         let first = topology.origin(half_edge);
         let along = self.vertex_difference(body, first, topology.target(half_edge));
@@ -422,9 +429,10 @@ impl ExitTest<'_, '_> {
         }
     }
 
-    /// Finds three or four corners of a face, in order, around the intersection with the line through `point`:
-    /// the first corner, and two or three consecutive ones that bisection finds. Rounding may make them miss
-    /// the line.
+    /// Finds three or four corners of a face, in order, around the intersection with the line through `point`.
+    /// Bisection finds two consecutive corners that enclose the line with another one, the *apex*. For a face with many
+    /// corners, a fourth one is far from these three, because the plane of a narrow triangle is inaccurate. Otherwise
+    /// the next corner follows. Rounding may make them miss the line.
     fn face_corners_around(&self, body: usize, half_edge: u32, point: DVec3) -> [u32; 4] {
         let topology = self.sides[body].topology;
         let boundary = topology.face_half_edges(topology.half_edge(half_edge).face);
@@ -436,20 +444,35 @@ impl ExitTest<'_, '_> {
         // The outward normal of a touching face has a positive component along the direction on P, a negative
         // one on Q.
         let outward = if body == 0 { self.setting.unit } else { -self.setting.unit };
-        let first = self.vertex_position(body, corner(0));
-        let is_left = |i: u32| {
-            let along = self.vertex_position(body, corner(i)) - first;
-            along.cross(point - first).dot(outward) > 0.0
+        // Corners are counted from the apex.
+        let enclosing = |apex: u32| {
+            let first = self.vertex_position(body, corner(apex));
+            let is_left = |i: u32| {
+                let along = self.vertex_position(body, corner((apex + i) % count)) - first;
+                along.cross(point - first).dot(outward) > 0.0
+            };
+            // Invariant: the point is to the left of the diagonal to `low`, and not to the left of the diagonal
+            // to `high`.
+            let (mut low, mut high) = (1, count - 1);
+            while high - low > 1 {
+                let middle = low.midpoint(high);
+                (low, high) = if is_left(middle) { (middle, high) } else { (low, middle) };
+            }
+            low
         };
-        // Invariant: the point is to the left of the diagonal to `low`, and not to the left of the diagonal to
-        // `high`.
-        let (mut low, mut high) = (1, count - 1);
-        while high - low > 1 {
-            let middle = low.midpoint(high);
-            (low, high) = if is_left(middle) { (middle, high) } else { (low, middle) };
+        if count <= MAX_SUCCESSIVE_CORNERS {
+            let low = enclosing(0).min(count - 3);
+            return [corner(0), corner(low), corner(low + 1), corner(low + 2)];
         }
-        let low = low.min(count - 3);
-        [corner(0), corner(low), corner(low + 1), corner(low + 2)]
+        let is_far = |low: u32| (count / 4..3 * count / 4).contains(&low);
+        let (mut apex, mut low) = (0, enclosing(0));
+        if !is_far(low) {
+            // Seen from the corner opposite the line, the line is far.
+            apex = (low + count / 2) % count;
+            low = enclosing(apex);
+        }
+        let between = (low + 1).midpoint(count);
+        [low, low + 1, between, 0].map(|i| corner((apex + i) % count))
     }
 }
 

@@ -18,7 +18,7 @@ use super::piece::{Affine, LinearPiece};
 use super::planar::{self, PlanarAnswer, PlanarHint};
 use super::region::{LevelRegion, Neighbourhood};
 use super::section_pair::SectionPair;
-use super::start::MinimisationStart;
+use super::start::{LEVEL_MARGIN, MinimisationStart};
 use crate::setting::Setting;
 use crate::solve::observe::{Cut, Observer, Phase, PlanarProblem, SectionContact, Watch};
 
@@ -37,8 +37,10 @@ const PREDICTED_REACH: f64 = 2.0;
 const OPTIMUM_SHARE: f64 = 0.3;
 /// Distance of the next planar problem from separated levels, in multiples of that of the separating line (measured).
 const BEYOND_LINE: f64 = 1.5;
+/// Least distance of the next planar problem from separated levels, as a share of the half-side of the neighbourhood.
+const LEAST_STEP: f64 = 0.05;
 /// Distance of predicted levels from the middle, at most, as a share of half their range: the section needs an area.
-const INNER_LEVELS: f64 = 0.998;
+const INNER_LEVELS: f64 = 1.0 - 2.0 * LEVEL_MARGIN;
 
 /// Options of a minimisation.
 #[derive(Debug, Clone, Copy)]
@@ -325,7 +327,11 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         };
         if local.weight == 0.0 && self.upper.is_infinite() {
             let Affine { value, gradient } = local.bound;
-            self.ahead = Some(at - gradient * (BEYOND_LINE * value / gradient.length_squared()));
+            let half = self.neighbourhood.map_or(0.0, |neighbourhood| neighbourhood.half);
+            // Sections that touch seem to be separated by a distance of zero.
+            let least = LEAST_STEP * half / gradient.abs().element_sum();
+            let step = (BEYOND_LINE * value / gradient.length_squared()).max(least);
+            self.ahead = Some(at - gradient * step);
         }
         self.region.cut_by(bound.gradient, limit - bound.value);
         let sides = &mut self.watch.steps.region_sides;
@@ -373,7 +379,10 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         for _ in 0..max_cells {
             let ExitResult::Falls(descent) = exit else { break };
             let Some(next) = self.enter_next_cell(&descent) else {
-                self.ahead = Some(DVec2::from_array(descent.levels) - self.sections.origin);
+                // At these levels the last problem was solved.
+                let is_new = descent.levels != levels;
+                self.ahead =
+                    is_new.then(|| DVec2::from_array(descent.levels) - self.sections.origin);
                 break;
             };
             exit = next;
@@ -390,20 +399,36 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         size.cmple(near * NARROW_FACTOR).all()
     }
 
-    /// Goes from the boundary of a cell to the best point of its neighbour. `None` if the edges of the sections
-    /// on the named faces do not cross there at the height of the best point found.
+    /// Goes from the boundary of a cell to the best point of its neighbour. Tries both faces of each named edge.
+    /// `None` if the edges of the sections on no two of these faces cross there at the height of the best point found,
+    /// or `phi` does not fall in their cells.
     fn enter_next_cell(&mut self, descent: &Descent) -> Option<ExitResult> {
+        let twin = |body: usize| {
+            let topology = self.sections.sides[body].topology;
+            topology.half_edge(descent.edges[body]).twin
+        };
+        let [[p, q], [other_p, other_q]] = [descent.edges, [twin(0), twin(1)]];
+        let pairs = [[p, q], [other_p, q], [p, other_q], [other_p, other_q]];
+        pairs.into_iter().find_map(|faces| self.enter_cell_on_faces(descent.levels, faces))
+    }
+
+    /// Goes to the best point of the cell in which faces touch, given by half-edges. `None` as
+    /// [`Self::enter_next_cell`].
+    fn enter_cell_on_faces(&mut self, levels: [f64; 2], faces: [u32; 2]) -> Option<ExitResult> {
         let SectionPair { sides, frame, extent, .. } = self.sections;
-        let answer = planar::solve_on_faces(sides, descent.levels, descent.faces)?;
-        let local = answer.linear_piece(frame, descent.levels);
+        let answer = planar::solve_on_faces(sides, levels, faces)?;
+        let local = answer.linear_piece(frame, levels);
         let is_there = (local.bound.value - self.upper).abs() <= HEIGHT_TOLERANCE * extent;
         if !is_there {
             return None;
         }
-        let cell = answer.contact_cell(sides, descent.levels)?;
+        let cell = answer.contact_cell(sides, levels)?;
         let best = cell.best_point(local.bound.gradient);
-        self.last = (descent.levels, answer);
-        Some(self.test_improvement((descent.levels, &answer), &local, (&cell, &best)))
+        if local.bound.value + best.change >= self.upper {
+            return None;
+        }
+        self.last = (levels, answer);
+        Some(self.test_improvement((levels, &answer), &local, (&cell, &best)))
     }
 
     /// Runs the exit test at the best point of a cell, and stores it, if it is lower than all before. Returns

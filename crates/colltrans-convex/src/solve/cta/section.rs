@@ -8,6 +8,7 @@ use glam::DVec2;
 use super::crossing::{Chain, Crossing, SectionEdge, is_horizontal};
 use super::sectioned_body::SectionedBody;
 use crate::body::convex::sections::{Turn, next_clockwise, next_counter_clockwise};
+use colltrans_kernel::topology::HalfEdge;
 
 /// Number of steps of a walk before its first search in the body's chains, if the body has chains.
 pub(super) const STEPS_BEFORE_SEARCH: usize = 2;
@@ -21,22 +22,13 @@ const MAX_FAN: usize = 16;
 /// edges.
 pub(super) const MAX_FACE_SIDES: usize = 6;
 
-/// Result of the search for a height on a chain.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum LocatedEdge {
-    /// The edge at this height, or the first edge of the chain if the height is below the chain.
-    Edge(SectionEdge),
-    /// The topmost edge: the chain ends below the height.
-    AboveTop(SectionEdge),
-}
-
-impl LocatedEdge {
-    /// Returns the edge at the height, or the nearest one.
-    pub(super) fn nearest_edge(self) -> SectionEdge {
-        match self {
-            Self::Edge(edge) | Self::AboveTop(edge) => edge,
-        }
-    }
+/// Result of the search for a height on a chain. The edge found is moved in place, because an edge has 144 bytes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Located {
+    /// The edge is at this height, or is the first edge of the chain if the height is below the chain.
+    AtHeight,
+    /// The edge is the topmost one: the chain ends below the height.
+    AboveTop,
 }
 
 /// The lowest vertex of a section.
@@ -60,8 +52,9 @@ impl Section<'_> {
     /// Computes the section vertex on a mesh edge, given by its half-edge upwards.
     fn section_vertex(&self, half_edge: u32) -> Crossing {
         self.side.count_iterations(1);
-        let topology = self.side.topology;
-        let vertices = [topology.origin(half_edge), topology.target(half_edge)];
+        let half_edges = self.side.topology.half_edges();
+        let HalfEdge { origin, twin, .. } = half_edges[half_edge as usize];
+        let vertices = [origin, half_edges[twin as usize].origin];
         let (low, high) = (self.side.level_point(vertices[0]), self.side.level_point(vertices[1]));
         let drift = (high.shadow - low.shadow) * (1.0 / (high.level - low.level));
         Crossing {
@@ -97,8 +90,11 @@ impl Section<'_> {
             Turn::CounterClockwise => topology.half_edge(from.half_edge).twin,
             Turn::Clockwise => from.half_edge,
         };
-        let third = topology.target(topology.next(along));
-        let third = self.side.level_point(third);
+        let half_edges = topology.half_edges();
+        let face = topology.face_half_edges(half_edges[along as usize].face);
+        let after_next =
+            if along + 2 < face.end { along + 2 } else { along + 2 - face.len() as u32 };
+        let third = self.side.level_point(half_edges[after_next as usize].origin);
         // The component of the vector to the third vertex that keeps the level.
         let base = from.w - from.drift * (self.level - from.levels[0]);
         (third.shadow - base) - from.drift * (third.level - from.levels[0])
@@ -109,9 +105,11 @@ impl Section<'_> {
     /// [`Self::max_steps`], or if rounding hides the way.
     fn walk_to_level(&self, from: u32, score: impl Fn(f64) -> f64) -> Option<u32> {
         let topology = self.side.topology;
+        let half_edges = topology.half_edges();
         let mut up = from;
         for step in 0..=self.max_steps {
-            let (low, high) = (topology.origin(up), topology.target(up));
+            let HalfEdge { origin: low, twin, .. } = half_edges[up as usize];
+            let high = half_edges[twin as usize].origin;
             let (vertex, sign) = if self.side.vertex_level(high) <= self.level {
                 (high, 1.0)
             } else if self.side.vertex_level(low) > self.level {
@@ -130,7 +128,7 @@ impl Section<'_> {
                 }
             }
             let h = self.best_edge_toward_level(vertex, sign, &score)?;
-            up = if sign > 0.0 { h } else { topology.half_edge(h).twin };
+            up = if sign > 0.0 { h } else { half_edges[h as usize].twin };
         }
         None
     }
@@ -250,25 +248,31 @@ impl Section<'_> {
         }
     }
 
-    /// Finds the edge of a chain at height `h`, from a half-edge upwards that crosses a level nearby. `None`
-    /// after [`Self::max_steps`], or if rounding hides the way.
-    pub(super) fn edge_at_height(&self, chain: Chain, h: f64, from: u32) -> Option<LocatedEdge> {
+    /// Finds the edge of a chain at height `h`, or the topmost one, from a half-edge upwards that crosses a level
+    /// nearby. `None` after [`Self::max_steps`], or if rounding hides the way.
+    pub(super) fn edge_at_height(
+        &self,
+        chain: Chain,
+        h: f64,
+        from: u32,
+    ) -> Option<(SectionEdge, Located)> {
         let start = self.section_vertex(self.walk_to_level(from, |height| (height - h).abs())?);
         let mut edge = self.edge_toward_height(chain, start, h);
         if !chain.is_ascending(edge.direction) {
             edge = self.any_chain_edge(chain, start)?;
         }
-        self.walk_to_height(chain, h, edge)
+        let located = self.walk_to_height(chain, h, &mut edge)?;
+        Some((edge, located))
     }
 
-    /// Walks along a chain from its edge `from` to the edge at height `h`. `None` after [`Self::max_steps`].
+    /// Walks along a chain from one of its edges to the edge at height `h`, or the topmost one. `None` after
+    /// [`Self::max_steps`].
     pub(super) fn walk_to_height(
         &self,
         chain: Chain,
         h: f64,
-        from: SectionEdge,
-    ) -> Option<LocatedEdge> {
-        let mut edge = from;
+        edge: &mut SectionEdge,
+    ) -> Option<Located> {
         for step in 0..self.max_steps {
             if edge.low.h() <= h {
                 return self.climb_to_height(chain, edge, h);
@@ -276,11 +280,10 @@ impl Section<'_> {
             if step % STEPS_BETWEEN_SEARCHES == STEPS_BEFORE_SEARCH
                 && let Some(low) = self.skip_down_to_height(chain, &edge.low, h)
             {
-                edge = SectionEdge::new(low, self.next_vertex(chain, &low));
+                *edge = SectionEdge::new(low, self.next_vertex(chain, &low));
             }
-            match self.edge_below(chain, &edge) {
-                Some(below) => edge = below,
-                None => return self.climb_to_height(chain, edge, h),
+            if !self.move_below(chain, edge) {
+                return self.climb_to_height(chain, edge, h);
             }
         }
         None
@@ -288,21 +291,19 @@ impl Section<'_> {
 
     /// Walks up a chain to the edge at height `h`, from an edge that is not above this height or is the chain's
     /// first. `None` after [`Self::max_steps`].
-    fn climb_to_height(&self, chain: Chain, from: SectionEdge, h: f64) -> Option<LocatedEdge> {
-        let mut edge = from;
+    fn climb_to_height(&self, chain: Chain, edge: &mut SectionEdge, h: f64) -> Option<Located> {
         for step in 0..self.max_steps {
             if step % STEPS_BETWEEN_SEARCHES == STEPS_BEFORE_SEARCH
                 && let Some(low) = self.skip_up_to_height(chain, &edge.low, h)
             {
-                edge = SectionEdge::new(low, self.next_vertex(chain, &low));
+                *edge = SectionEdge::new(low, self.next_vertex(chain, &low));
             }
             if edge.high.h() > h && !is_horizontal(edge.direction) {
-                return Some(LocatedEdge::Edge(edge));
+                return Some(Located::AtHeight);
             }
-            match self.edge_above(chain, &edge) {
-                Some(above) => edge = above,
-                None if edge.high.h() >= h => return Some(LocatedEdge::Edge(edge)),
-                None => return Some(LocatedEdge::AboveTop(edge)),
+            if !self.move_above(chain, edge) {
+                let reaches = edge.high.h() >= h;
+                return Some(if reaches { Located::AtHeight } else { Located::AboveTop });
             }
         }
         None
@@ -344,27 +345,12 @@ impl Section<'_> {
         None
     }
 
-    /// Returns the edge of the section on the face of a half-edge, and its chain. `None` for a face with more
-    /// than [`MAX_FACE_SIDES`] sides, a face that the level does not cut, or a horizontal edge.
+    /// Returns the edge of the section on the face of a half-edge, and its chain. `None` for a face that the level does
+    /// not cut, a horizontal edge, or a face with more than [`MAX_FACE_SIDES`] sides if the body has no chains.
     pub(super) fn edge_on_face(&self, half_edge: u32) -> Option<(Chain, SectionEdge)> {
-        let topology = self.side.topology;
-        let boundary = topology.face_half_edges(topology.half_edge(half_edge).face);
-        if boundary.len() > MAX_FACE_SIDES {
-            return None;
-        }
-        let above = |h: u32| self.side.vertex_level(topology.origin(h)) > self.level;
-        let (mut from, mut to) = (None, None);
-        let mut last = boundary.end - 1;
-        for h in boundary {
-            match (above(last), above(h)) {
-                (true, false) => from = Some(topology.half_edge(last).twin),
-                (false, true) => to = Some(last),
-                _ => {}
-            }
-            last = h;
-        }
+        let [from, to] = self.mesh_edges_on_face(half_edge)?;
         // The face's boundary is traversed counter-clockwise.
-        let (from, to) = (self.section_vertex(from?), self.section_vertex(to?));
+        let (from, to) = (self.section_vertex(from), self.section_vertex(to));
         let chain = match self.side.turn_up_chain(Chain::Left) {
             Turn::CounterClockwise => Chain::Left,
             Turn::Clockwise => Chain::Right,
@@ -380,17 +366,62 @@ impl Section<'_> {
         })
     }
 
-    /// Returns the edge above `edge` on its chain. `None` at the top of the chain.
-    pub(super) fn edge_above(&self, chain: Chain, edge: &SectionEdge) -> Option<SectionEdge> {
-        let above = SectionEdge::new(edge.high, self.next_vertex(chain, &edge.high));
-        chain.is_ascending(above.direction).then_some(above)
+    /// Returns the half-edges upwards of the two mesh edges of a face that cross the level, counter-clockwise. `None` as
+    /// [`Self::edge_on_face`].
+    fn mesh_edges_on_face(&self, half_edge: u32) -> Option<[u32; 2]> {
+        let topology = self.side.topology;
+        let face = topology.half_edge(half_edge).face;
+        let boundary = topology.face_half_edges(face);
+        let above = |v: u32| self.side.vertex_level(v) > self.level;
+        if boundary.len() > MAX_FACE_SIDES {
+            let [start, end] = [topology.origin(half_edge), topology.target(half_edge)].map(above);
+            let up = match (start, end) {
+                (false, true) => half_edge,
+                (true, false) => topology.half_edge(half_edge).twin,
+                _ => self.side.chain_search(self.level)?.crossing_along_faces(half_edge)?,
+            };
+            let faces = [up, topology.half_edge(up).twin].map(|h| topology.half_edge(h).face);
+            return match faces.map(|beside| beside == face) {
+                [true, _] => Some([next_clockwise(topology, up, above), up]),
+                [_, true] => Some([up, next_counter_clockwise(topology, up, above)]),
+                _ => None,
+            };
+        }
+        let (mut from, mut to) = (None, None);
+        let mut last = boundary.end - 1;
+        for h in boundary {
+            match (above(topology.origin(last)), above(topology.origin(h))) {
+                (true, false) => from = Some(topology.half_edge(last).twin),
+                (false, true) => to = Some(last),
+                _ => {}
+            }
+            last = h;
+        }
+        Some([from?, to?])
     }
 
-    /// Returns the edge below `edge` on its chain. `None` at the bottom of the chain, or if that edge is
-    /// horizontal.
-    pub(super) fn edge_below(&self, chain: Chain, edge: &SectionEdge) -> Option<SectionEdge> {
-        let below = SectionEdge::new(self.previous_vertex(chain, &edge.low), edge.low);
-        let rises = chain.is_ascending(below.direction) && !is_horizontal(below.direction);
-        rises.then_some(below)
+    /// Moves `edge` to the edge above it on its chain. Returns `false` and keeps it at the top of the chain.
+    pub(super) fn move_above(&self, chain: Chain, edge: &mut SectionEdge) -> bool {
+        let next = self.next_vertex(chain, &edge.high);
+        let direction = edge.high.edge_direction_to(&next);
+        let rises = chain.is_ascending(direction);
+        if rises {
+            edge.low = edge.high;
+            (edge.high, edge.direction) = (next, direction);
+        }
+        rises
+    }
+
+    /// Moves `edge` to the edge below it on its chain. Returns `false` and keeps it at the bottom of the chain, or if
+    /// that edge is horizontal.
+    pub(super) fn move_below(&self, chain: Chain, edge: &mut SectionEdge) -> bool {
+        let previous = self.previous_vertex(chain, &edge.low);
+        let direction = previous.edge_direction_to(&edge.low);
+        let rises = chain.is_ascending(direction) && !is_horizontal(direction);
+        if rises {
+            edge.high = edge.low;
+            (edge.low, edge.direction) = (previous, direction);
+        }
+        rises
     }
 }

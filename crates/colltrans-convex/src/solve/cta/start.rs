@@ -32,8 +32,8 @@ pub(crate) struct LastSolution {
 }
 
 /// Distance of the first levels from the ends of their range, as a share of the range: the section needs an
-/// area.
-const LEVEL_MARGIN: f64 = 0.005;
+/// area. Bodies with rims often touch near an end.
+pub(super) const LEVEL_MARGIN: f64 = 1e-6;
 
 /// First state of a minimisation.
 pub(super) struct InitialState {

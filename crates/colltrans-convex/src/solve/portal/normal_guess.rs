@@ -100,11 +100,36 @@ impl NormalGuess {
     #[inline]
     pub(crate) fn with_curvatures(difference: &MinkowskiDifference) -> (Self, [DMat2; 2]) {
         let (center, [a, b]) = difference.inertia_ellipsoids();
-        let mut normal = fitted_entry_normal(difference.setting, center, [&a, &b]);
+        let normal = fitted_entry_normal(difference.setting, center, [&a, &b]);
+        Self::after_newton_step(normal, center, [&a, &b])
+    }
+
+    /// Returns the guess at the other end of the line: where the line leaves an ellipsoid that it enters with the
+    /// normal `other`. `other` points against the direction. Curvatures as in [`Self::with_curvatures`].
+    pub(crate) fn opposite_with_curvatures(
+        difference: &MinkowskiDifference,
+        other: DVec3,
+    ) -> (Self, [DMat2; 2]) {
+        let setting = difference.setting;
+        let (center, [a, b]) = difference.inertia_ellipsoids();
+        let r = setting.fixed.inertia().radius / setting.moving.inertia().radius;
+        let (j, _) = a.linear_combination(1.0 + r, &b, 1.0 + 1.0 / r).adjugate();
+        // Normals at both ends differ by a multiple of the direction, mapped by the inverse of the matrix.
+        let normal = other - DVec3::new(j.xz, j.yz, j.zz) * (2.0 * other.z / j.zz);
+        Self::after_newton_step(with_limited_slope(normal), center, [&a, &b])
+    }
+
+    /// Returns the guess after a Newton step on `f`, if the step is short, and the Hessians before this step.
+    #[inline]
+    fn after_newton_step(
+        mut normal: DVec3,
+        center: DVec3,
+        [a, b]: [&Symmetric; 2],
+    ) -> (Self, [DMat2; 2]) {
         let mut curvatures = [DMat2::ZERO; 2];
         if normal.z > 0.0 {
             let ((p, hessian_p), (q, hessian_q)) =
-                (support_derivatives(&a, normal), support_derivatives(&b, normal));
+                (support_derivatives(a, normal), support_derivatives(b, normal));
             let step = (hessian_p + hessian_q).inverse() * (center.truncate() - p - q);
             if step.length_squared() < MAX_NEWTON_STEP * MAX_NEWTON_STEP * normal.length_squared() {
                 normal += step.extend(0.0);

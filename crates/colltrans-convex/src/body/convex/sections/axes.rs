@@ -33,18 +33,18 @@ impl AxisPair {
         // The squares of the three quantities for unit vectors, times a common factor 9.
         let along = |matrix: &DMat3| levels_of(matrix.transpose() * unit).map(|l| 3.0 * (l * l));
         let (a_along, b_along) = (along(moving), along(fixed));
-        let to_moving = moving.transpose();
-        let [x, y, z] =
-            [fixed.x_axis, fixed.y_axis, fixed.z_axis].map(|v| levels_of(to_moving * v));
         let ((mut i, mut j), mut quality) = ((0, 0), -1.0);
-        for k in 0..4 {
-            if a_along[k] <= quality {
+        // Only axes that lie more along the direction than the best pair can improve it. Therefore the axis nearest
+        // to the direction comes first. Of equal pairs, the first one counts.
+        let nearest = (1..4).fold(0, |best, k| if a_along[k] > a_along[best] { k } else { best });
+        for k in std::iter::once(nearest).chain((0..4).filter(|&k| k != nearest)) {
+            if a_along[k] < quality {
                 continue;
             }
-            let cosines = levels_of(DVec3::new(x[k], y[k], z[k]));
+            let cosines = levels_of(fixed.transpose() * (*moving * AXES[k]));
             for l in 0..4 {
                 let q = a_along[k].min(b_along[l]).min(9.0 - cosines[l] * cosines[l]);
-                if q > quality {
+                if q > quality || (q == quality && (k, l) < (i, j)) {
                     ((i, j), quality) = ((k, l), q);
                 }
             }

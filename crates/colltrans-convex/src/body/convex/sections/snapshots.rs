@@ -27,8 +27,8 @@ const STRIDE_PER_ROOT: f64 = 1.0 / 3.0;
 /// of 63 iterations per planar problem.
 pub(super) const CHAIN_THRESHOLD: f64 = 24.0;
 
-/// Number of candidates that one round of the search for an extreme entry compares, approximately.
-const CANDIDATES: usize = 16;
+/// Maximum number of candidates with which the search for an extreme entry begins.
+const FIRST_CANDIDATES: usize = 4;
 
 /// A crossing edge of a snapshot.
 #[derive(Debug, Clone, Copy)]
@@ -408,8 +408,9 @@ impl Snapshot<'_> {
 
     /// Finds the entry whose point has the smallest first coordinate times `sign`, which is 1 or -1.
     ///
-    /// On a convex polygon, the minimum lies within one stride of the best of every `stride`-th entry. Each round
-    /// compares all its candidates without branches, because their outcomes are unpredictable.
+    /// On a convex polygon, the minimum lies within one stride of the best of every `stride`-th entry. Therefore each
+    /// halving of the stride adds two candidates. They are compared without branches, because the outcomes are
+    /// unpredictable.
     pub(crate) fn extreme_entry(&self, sign: f32) -> usize {
         let count = self.entries.len();
         let slope = self.map.height.map(|s| sign * s);
@@ -418,30 +419,22 @@ impl Snapshot<'_> {
             slope[0] * u + slope[1] * v
         };
         let mut stride = 1;
-        while stride * CANDIDATES < count {
-            stride *= CANDIDATES / 2;
+        while stride * FIRST_CANDIDATES < count {
+            stride *= 2;
         }
         let (mut best, mut least) = (0, value(0));
-        let mut consider = |from: usize, to: usize, stride: usize| {
-            for i in (from..to).step_by(stride) {
-                let candidate = value(i);
-                best = if candidate < least { i } else { best };
-                least = least.min(candidate);
-            }
+        let mut consider = |i: usize| {
+            let candidate = value(i);
+            best = if candidate < least { i } else { best };
+            least = least.min(candidate);
             best
         };
-        let mut centre = consider(0, count, stride);
+        let mut centre = (stride..count).step_by(stride).map(&mut consider).last().unwrap_or(0);
         while stride > 1 {
-            let reach = stride;
-            stride = (stride / (CANDIDATES / 2)).max(1);
-            let (from, to) = (centre as isize - reach as isize, centre + reach);
-            if from < 0 {
-                consider((from + count as isize).max(0) as usize, count, stride);
-            }
-            if to > count {
-                consider(0, to - count, stride);
-            }
-            centre = consider(from.max(0) as usize, to.min(count), stride);
+            stride /= 2;
+            let (back, ahead) = (centre + count - stride, centre + stride);
+            consider(if back >= count { back - count } else { back });
+            centre = consider(if ahead >= count { ahead - count } else { ahead });
         }
         centre
     }

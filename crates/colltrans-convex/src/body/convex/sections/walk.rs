@@ -3,6 +3,8 @@
 //! A level cuts a convex face in one segment. Therefore the vertices of the face above the level form one run of
 //! its boundary, those below the other. A half-edge leads from one run to the other; galloping and bisection find
 //! the half-edge back. A face with `k` vertices takes `O(log k)` time.
+//!
+//! Vertices are read from the half-edges, which are in memory next to each other, and not from a second array.
 
 use colltrans_kernel::topology::Topology;
 
@@ -33,13 +35,14 @@ pub(crate) fn next_clockwise(topology: &Topology, up: u32, above: impl Fn(u32) -
 /// be true for the origin of `from`, and false for its target.
 #[inline]
 fn run_end(topology: &Topology, from: u32, inside: impl Fn(u32) -> bool) -> u32 {
-    let face = topology.face_half_edges(topology.half_edge(from).face);
+    let half_edges = topology.half_edges();
+    let face = topology.face_half_edges(half_edges[from as usize].face);
     let count = face.end - face.start;
     let wrap = |offset: u32| {
         let h = from + offset;
         if h >= face.end { h - count } else { h }
     };
-    let is_inside = |offset: u32| inside(topology.origin(wrap(offset)));
+    let is_inside = |offset: u32| inside(half_edges[wrap(offset) as usize].origin);
     if count <= 4 {
         // Without branches, which would be unpredictable. For a triangle, the fourth corner is the first one, which
         // is inside.

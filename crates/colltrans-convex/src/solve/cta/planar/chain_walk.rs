@@ -14,7 +14,7 @@ use glam::DVec2;
 
 use super::{Crossing, PlanarAnswer};
 use crate::solve::cta::crossing::{Chain, SectionEdge};
-use crate::solve::cta::section::{LocatedEdge, STEPS_BEFORE_SEARCH, Section};
+use crate::solve::cta::section::{Located, STEPS_BEFORE_SEARCH, Section};
 use colltrans_kernel::noise;
 
 /// Maximum number of steps of Newton's method.
@@ -45,12 +45,13 @@ pub(super) struct FacingChains<'a, 'b> {
 }
 
 /// Result of a walk along two chains.
+#[expect(clippy::large_enum_variant, reason = "a query allocates nothing")]
 pub(super) enum ChainWalk {
     /// The answer.
     Solved(PlanarAnswer),
     /// The walk has reached the bottom of this body's section, and the bottom is not beyond the edge of the other
-    /// body. Contains the last edges.
-    Within(usize, [SectionEdge; 2]),
+    /// body.
+    Within(usize),
 }
 
 impl<'a, 'b> FacingChains<'a, 'b> {
@@ -65,7 +66,7 @@ impl<'a, 'b> FacingChains<'a, 'b> {
     pub(super) fn edges_at_height(&self, height: f64, from: [u32; 2]) -> Option<[SectionEdge; 2]> {
         let edge = |body: usize| {
             let section = &self.sections[body];
-            Some(section.edge_at_height(self.chains[body], height, from[body])?.nearest_edge())
+            Some(section.edge_at_height(self.chains[body], height, from[body])?.0)
         };
         Some([edge(0)?, edge(1)?])
     }
@@ -73,33 +74,28 @@ impl<'a, 'b> FacingChains<'a, 'b> {
     /// Goes from two edges towards the height at which the gap closes, by Newton's method. Because the gap is
     /// convex, all steps but the first come from below. Only for bodies with chains, on which a walk may be
     /// long.
-    fn approach_by_newton(&self, from: &[SectionEdge; 2]) -> [SectionEdge; 2] {
-        let mut edges = *from;
+    fn approach_by_newton(&self, edges: &mut [SectionEdge; 2]) {
         if !self.has_chains() {
-            return edges;
+            return;
         }
         for _ in 0..NEWTON_STEPS {
-            let h = line_intersection(&edges).x;
+            let h = line_intersection(edges).x;
             let is_there = edges.iter().all(|edge| edge.low.h() <= h && h <= edge.high.h());
-            if is_there || !self.gap_closes(&edges) {
+            if is_there || !self.gap_closes(edges) {
                 break;
             }
-            let Some(next) = self.move_to_height(h, &edges) else { break };
-            edges = next;
+            let Some(next) = self.move_to_height(h, edges) else { break };
+            *edges = next;
         }
-        edges
     }
 
     /// Finds the edges at a height from others on the same chains. `None` if a walk fails.
     fn move_to_height(&self, h: f64, from: &[SectionEdge; 2]) -> Option<[SectionEdge; 2]> {
-        let edge = |body: usize| {
-            Some(
-                self.sections[body]
-                    .walk_to_height(self.chains[body], h, from[body])?
-                    .nearest_edge(),
-            )
-        };
-        Some([edge(0)?, edge(1)?])
+        let mut edges = *from;
+        for (body, edge) in edges.iter_mut().enumerate() {
+            self.sections[body].walk_to_height(self.chains[body], h, edge)?;
+        }
+        Some(edges)
     }
 
     fn has_chains(&self) -> bool {
@@ -125,19 +121,20 @@ impl<'a, 'b> FacingChains<'a, 'b> {
                 return false;
             }
             let edge = SectionEdge::new(*v, section.next_vertex(chain, v));
-            let Some(LocatedEdge::Edge(beside)) =
-                self.sections[1 - body].walk_to_height(self.chains[1 - body], v.h(), other)
-            else {
+            let mut beside = other;
+            let located =
+                self.sections[1 - body].walk_to_height(self.chains[1 - body], v.h(), &mut beside);
+            if located != Some(Located::AtHeight) {
                 return false;
-            };
+            }
             let mut edges = [edge; 2];
             edges[1 - body] = beside;
             let falls = beside.low.h() > v.h()
                 || chain.is_ascending(edge.direction)
                     && self.is_on_own_side(body, v, &edges)
                     && self.gap_closes(&edges);
-            let ahead =
-                if is_up { falls } else { !falls && self.edge_below(body, &edge).is_some() };
+            let mut below = edge;
+            let ahead = if is_up { falls } else { !falls && self.move_below(body, &mut below) };
             other = if ahead { beside } else { other };
             ahead
         })?;
@@ -152,31 +149,29 @@ impl<'a, 'b> FacingChains<'a, 'b> {
 
     /// Walks from any edges down to a height at which the gap is positive and falls, and from there up to the answer.
     /// `None` if a walk fails.
-    pub(super) fn walk_to_answer(&self, from: &[SectionEdge; 2]) -> Option<ChainWalk> {
-        let mut edges = self.approach_by_newton(from);
+    pub(super) fn walk_to_answer(&self, edges: &mut [SectionEdge; 2]) -> Option<ChainWalk> {
+        self.approach_by_newton(edges);
         for step in 1..=self.max_steps() {
-            let upper = higher_start(&edges);
+            let upper = higher_start(edges);
             let lower = 1 - upper;
             if step % STEPS_BEFORE_SEARCH == 0 {
                 let top = edges[lower].high.h();
                 if edges[upper].low.h() <= top {
-                    edges = self.skip_along_chain(upper, false, &edges).unwrap_or(edges);
+                    if let Some(skipped) = self.skip_along_chain(upper, false, edges) {
+                        *edges = skipped;
+                    }
                 } else if self.has_chains() {
                     let section = &self.sections[upper];
-                    edges[upper] = section
-                        .walk_to_height(self.chains[upper], top, edges[upper])?
-                        .nearest_edge();
+                    section.walk_to_height(self.chains[upper], top, &mut edges[upper])?;
                 }
-                if higher_start(&edges) != upper {
+                if higher_start(edges) != upper {
                     continue;
                 }
             }
             if edges[upper].low.h() > edges[lower].high.h() {
-                if let Some(below) = self.edge_below(upper, &edges[upper]) {
-                    edges[upper] = below;
-                } else if let Some(above) = self.edge_above(lower, &edges[lower]) {
-                    edges[lower] = above;
-                } else {
+                if !self.move_below(upper, &mut edges[upper])
+                    && !self.move_above(lower, &mut edges[lower])
+                {
                     let [bottom, top] = [&edges[upper].low, &edges[lower].high];
                     return Some(ChainWalk::Solved(PlanarAnswer::separated_by_height(
                         upper, bottom, top,
@@ -184,22 +179,19 @@ impl<'a, 'b> FacingChains<'a, 'b> {
                 }
                 continue;
             }
-            let is_apart = self.is_on_own_side(upper, &edges[upper].low, &edges);
-            if is_apart && self.gap_closes(&edges) {
-                return self.walk_up(&edges).map(ChainWalk::Solved);
+            let is_apart = self.is_on_own_side(upper, &edges[upper].low, edges);
+            if is_apart && self.gap_closes(edges) {
+                return self.walk_up(edges).map(ChainWalk::Solved);
             }
-            let Some(below) = self.edge_below(upper, &edges[upper]) else {
+            let supports = edges.each_ref().map(|edge| edge.low);
+            if !self.move_below(upper, &mut edges[upper]) {
                 return Some(if is_apart {
-                    ChainWalk::Solved(
-                        self.separation_along(&edges[lower], edges.map(|edge| edge.low)),
-                    )
+                    ChainWalk::Solved(self.separation_along(&edges[lower], supports))
                 } else {
-                    ChainWalk::Within(upper, edges)
+                    ChainWalk::Within(upper)
                 });
-            };
-            let supports = edges.map(|edge| edge.low);
-            edges[upper] = below;
-            if is_apart && self.gap_closes(&edges) {
+            }
+            if is_apart && self.gap_closes(edges) {
                 return Some(ChainWalk::Solved(self.separation_along(&edges[lower], supports)));
             }
         }
@@ -207,29 +199,30 @@ impl<'a, 'b> FacingChains<'a, 'b> {
     }
 
     /// Walks up from edges where the gap is positive. `None` after the maximum number of steps.
-    pub(super) fn walk_up(&self, from: &[SectionEdge; 2]) -> Option<PlanarAnswer> {
-        let mut edges = *from;
+    pub(super) fn walk_up(&self, edges: &mut [SectionEdge; 2]) -> Option<PlanarAnswer> {
         // Body whose vertex was passed last.
-        let mut passed = higher_start(&edges);
+        let mut passed = higher_start(edges);
         for step in 1..=self.max_steps() {
             if step % STEPS_BEFORE_SEARCH == 0 {
                 let ending = usize::from(edges[1].high.h() < edges[0].high.h());
-                edges = self.skip_along_chain(ending, true, &edges).unwrap_or(edges);
+                if let Some(skipped) = self.skip_along_chain(ending, true, edges) {
+                    *edges = skipped;
+                }
             }
-            if !self.gap_closes(&edges) {
-                return Some(self.separation_along(&edges[1 - passed], edges.map(|edge| edge.low)));
+            if !self.gap_closes(edges) {
+                let supports = edges.each_ref().map(|edge| edge.low);
+                return Some(self.separation_along(&edges[1 - passed], supports));
             }
             // The edge that ends first decides without a quotient whether the edges meet.
             let ending = usize::from(edges[1].high.h() < edges[0].high.h());
-            if !self.is_on_own_side(ending, &edges[ending].high, &edges) {
-                return Some(edge_contact(&edges));
+            if !self.is_on_own_side(ending, &edges[ending].high, edges) {
+                return Some(edge_contact(edges));
             }
-            let Some(above) = self.edge_above(ending, &edges[ending]) else {
-                let mut supports = edges.map(|edge| edge.low);
+            if !self.move_above(ending, &mut edges[ending]) {
+                let mut supports = edges.each_ref().map(|edge| edge.low);
                 supports[ending] = edges[ending].high;
                 return Some(self.separation_along(&edges[1 - ending], supports));
-            };
-            edges[ending] = above;
+            }
             passed = ending;
         }
         None
@@ -254,14 +247,14 @@ impl<'a, 'b> FacingChains<'a, 'b> {
                 > noise::SECTION * noise::SECTION * r.length_squared() * s.length_squared()
     }
 
-    /// Returns the edge above `edge` on the chain of a body. `None` at its top.
-    fn edge_above(&self, body: usize, edge: &SectionEdge) -> Option<SectionEdge> {
-        self.sections[body].edge_above(self.chains[body], edge)
+    /// Moves an edge up the chain of a body. Returns `false` at its top.
+    fn move_above(&self, body: usize, edge: &mut SectionEdge) -> bool {
+        self.sections[body].move_above(self.chains[body], edge)
     }
 
-    /// Returns the edge below `edge` on the chain of a body. `None` at its bottom.
-    fn edge_below(&self, body: usize, edge: &SectionEdge) -> Option<SectionEdge> {
-        self.sections[body].edge_below(self.chains[body], edge)
+    /// Moves an edge down the chain of a body. Returns `false` at its bottom.
+    fn move_below(&self, body: usize, edge: &mut SectionEdge) -> bool {
+        self.sections[body].move_below(self.chains[body], edge)
     }
 
     /// Returns the separation by a line along the edge `along`, with these closest vertices.

@@ -16,7 +16,7 @@ mod snapshot_guess;
 use glam::DVec2;
 
 use super::crossing::{Chain, Crossing, SectionEdge};
-use super::section::{LocatedEdge, Section, SectionBottom};
+use super::section::{Located, Section, SectionBottom};
 use super::sectioned_body::SectionedBody;
 use chain_walk::{ChainWalk, FacingChains, edge_contact};
 use snapshot_guess::guess_from_snapshots;
@@ -118,9 +118,10 @@ impl SectionProblem<'_> {
             LastAnswer::Nothing => None,
             LastAnswer::Facing { right, edges } => {
                 let chains = FacingChains::new(&self.sections, right);
-                match chains.walk_to_answer(&chains.edges_at_height(height, edges)?)? {
+                let mut edges = chains.edges_at_height(height, edges)?;
+                match chains.walk_to_answer(&mut edges)? {
                     ChainWalk::Solved(found) => Some(found),
-                    ChainWalk::Within(upper, edges) => {
+                    ChainWalk::Within(upper) => {
                         let between = [edges[1 - upper].low.half_edge; 2];
                         self.solve_at_bottom(upper, edges[upper].low.half_edge, between, true)
                     }
@@ -151,24 +152,18 @@ impl SectionProblem<'_> {
         let ends = self.bottom_ends(upper, &bottom);
         let mut edges = [None; 2];
         for (chain, from) in [Chain::Left, Chain::Right].into_iter().zip(between) {
-            match lower.edge_at_height(chain, h0, from)? {
-                LocatedEdge::AboveTop(topmost) => {
-                    return Some(PlanarAnswer::separated_by_height(
-                        upper,
-                        &bottom.vertex,
-                        &topmost.high,
-                    ));
-                }
-                LocatedEdge::Edge(edge) if edge.low.h() > h0 && !is_upper_known => {
-                    return self.solve_at_bottom(1 - upper, edge.low.half_edge, [vertex; 2], true);
-                }
-                LocatedEdge::Edge(edge) => {
-                    if let Some(end) = end_beyond_chain(chain, &edge, h0, &ends) {
-                        return self.solve_facing(upper, *end, chain, edge);
-                    }
-                    edges[usize::from(chain == Chain::Right)] = Some(edge);
-                }
+            let (edge, located) = lower.edge_at_height(chain, h0, from)?;
+            if located == Located::AboveTop {
+                let [bottom, top] = [&bottom.vertex, &edge.high];
+                return Some(PlanarAnswer::separated_by_height(upper, bottom, top));
             }
+            if edge.low.h() > h0 && !is_upper_known {
+                return self.solve_at_bottom(1 - upper, edge.low.half_edge, [vertex; 2], true);
+            }
+            if let Some(end) = end_beyond_chain(chain, &edge, h0, &ends) {
+                return self.solve_facing(upper, *end, chain, edge);
+            }
+            edges[usize::from(chain == Chain::Right)] = Some(edge);
         }
         Some(bottom_contact(upper, &ends, [edges[0]?, edges[1]?], h0))
     }
@@ -192,9 +187,9 @@ impl SectionProblem<'_> {
         // The body whose left chain faces the other body is on the right.
         let right = if chain == Chain::Left { 1 - upper } else { upper };
         let chains = FacingChains::new(&self.sections, right);
-        let edges = order_by_body(upper, first, edge);
+        let mut edges = order_by_body(upper, first, edge);
         if chains.gap_closes(&edges) {
-            chains.walk_up(&edges)
+            chains.walk_up(&mut edges)
         } else {
             Some(chains.separation_along(&edge, order_by_body(upper, end, edge.low)))
         }

@@ -1,17 +1,13 @@
-//! `instructions`: counts the instructions of casts with one solver, in a run under callgrind.
+//! `instructions`: answers the same casts with several solvers, in a run under callgrind.
 //!
-//! ```sh
-//! valgrind --tool=callgrind --callgrind-out-file=/dev/null --toggle-collect='*counted_casts*' \
-//!     target/release/instructions --shape ellipsoid --vertices 3200 --solver guess
-//! ```
-//!
-//! The bodies, their sections and the settings are made before; `Collected` over the printed number of casts is the
-//! number of instructions of one. The counts of planar problems, supports and pivots do not need callgrind.
+//! `research/bench/instructions.py` runs it and writes a table. Callgrind counts in [`counted_casts`], whose calls are
+//! in the order of the pairs of bodies, and for each pair in that of the solvers. The bodies, their sections and the
+//! settings are made before. The counts of planar problems, supports and pivots do not need callgrind.
 
 use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
-use colltrans::{Cast, Focus, Options, Outcome, Solver, Steps, Tracker, cta};
+use colltrans::{Cast, Options, Outcome, Solver, Steps, Tracker, cta};
 use colltrans_bench::shapes::{Shape, body_from_mesh};
 use colltrans_lab::settings::{Meeting, Setting};
 use colltrans_lab::shapes::Bodies;
@@ -19,7 +15,7 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::ring_sphere;
 use glam::DVec3;
 
-/// Counts the work of casts with one solver; run it under callgrind for instructions
+/// Counts the work of casts with each solver; run it under callgrind for instructions
 #[derive(Debug, Parser)]
 struct Arguments {
     /// Kind of bodies: ellipsoid, thin, hull, superellipsoid, half, box, prism, bicone
@@ -28,9 +24,9 @@ struct Arguments {
     /// Vertices of a body, approximately
     #[arg(long, default_value_t = 3200)]
     vertices: usize,
-    /// Solver, or the start of the paper's algorithm
-    #[arg(long, default_value = "portal")]
-    solver: Contestant,
+    /// Solvers, or starts of the paper's algorithm
+    #[arg(long, value_delimiter = ',', required = true)]
+    solvers: Vec<Contestant>,
     /// Pairs of bodies
     #[arg(long, default_value_t = 4)]
     pairs: usize,
@@ -52,6 +48,8 @@ enum Contestant {
     Guess,
     /// As `guess`, with shifts across cells
     GuessAcross,
+    /// Portal refinement from the contact of ellipsoids, which are a start of the paper's algorithm
+    Ellipsoids,
 }
 
 impl Contestant {
@@ -65,7 +63,12 @@ impl Contestant {
             Self::Center => cta(cta::Start::Center, false),
             Self::Guess => cta(cta::Start::Guess, false),
             Self::GuessAcross => cta(cta::Start::Guess, true),
+            Self::Ellipsoids => cta(cta::Start::Ellipsoids, false),
         }
+    }
+
+    fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
     }
 }
 
@@ -140,69 +143,77 @@ fn counted_casts<'a>(
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Counts, String> {
-    let options = arguments.solver.options();
-    let mut counts = Counts::default();
+fn run(arguments: &Arguments) -> Result<Vec<Counts>, String> {
+    let mut counts: Vec<Counts> = arguments.solvers.iter().map(|_| Counts::default()).collect();
     let mut random = Random::new(20);
     for _ in 0..arguments.pairs {
         let bodies = bodies(&arguments.shape, arguments.vertices, &mut random)?;
-        let cast =
-            |setting: &Setting| setting.cast(&bodies, &options).map_err(|error| error.to_string());
-        let mut outcomes = Vec::with_capacity(arguments.casts.max(arguments.tracked));
         if arguments.tracked == 0 {
             let settings: Vec<Setting> = (0..=arguments.casts)
                 .map(|_| Setting::draw(&bodies, Meeting::Colliding, &mut random))
                 .collect();
-            let casts = settings.iter().map(cast).collect::<Result<Vec<_>, _>>()?;
-            // The first cast builds the sections.
-            casts[0].first_contact().map_err(|error| error.to_string())?;
-            counted_casts(&casts[1..], None, &mut outcomes);
-            for outcome in &outcomes {
-                counts.add(outcome);
+            for (solver, counts) in arguments.solvers.iter().zip(&mut counts) {
+                solver.answer(&bodies, &settings, None, counts)?;
             }
             continue;
         }
         for _ in 0..arguments.casts {
             let count = arguments.tracked + 1;
             let settings = Setting::sequence(&bodies, Meeting::Colliding, 1e-3, count, &mut random);
-            let casts = settings.iter().map(cast).collect::<Result<Vec<_>, _>>()?;
-            let mut tracker = Tracker::new();
-            if options.solver == Solver::Cta {
-                let focus = Focus::for_solver(Solver::Cta);
-                tracker = tracker.with_focus(focus).map_err(|error| error.to_string())?;
-            }
-            tracker.first_contact(&casts[0]).map_err(|error| error.to_string())?;
-            outcomes.clear();
-            counted_casts(&casts[1..], Some(&mut tracker), &mut outcomes);
-            for outcome in &outcomes {
-                counts.add(outcome);
+            for (solver, counts) in arguments.solvers.iter().zip(&mut counts) {
+                solver.answer(&bodies, &settings, Some(Tracker::new()), counts)?;
             }
         }
     }
     Ok(counts)
 }
 
+impl Contestant {
+    /// Answers all settings but the first one, which a tracker starts from.
+    fn answer<'a>(
+        self,
+        bodies: &'a Bodies,
+        settings: &[Setting],
+        mut tracker: Option<Tracker<'a>>,
+        counts: &mut Counts,
+    ) -> Result<(), String> {
+        let options = self.options();
+        let cast =
+            |setting: &Setting| setting.cast(bodies, &options).map_err(|error| error.to_string());
+        let casts = settings.iter().map(cast).collect::<Result<Vec<_>, _>>()?;
+        let mut outcomes = Vec::with_capacity(casts.len());
+        if let Some(tracker) = &mut tracker {
+            tracker.first_contact(&casts[0]).map_err(|error| error.to_string())?;
+        }
+        counted_casts(&casts[1..], tracker.as_mut(), &mut outcomes);
+        outcomes.iter().for_each(|outcome| counts.add(outcome));
+        Ok(())
+    }
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     match run(&arguments) {
-        Ok(counts) => {
-            let each = |sum: u32| f64::from(sum) / f64::from(counts.casts);
+        Ok(all) => {
             println!(
-                "{} {} {:?}: {} casts, {} contacts, planar problems {:.2} (at most {}), iterations {:.1} (at most {}), \
-                 supports {:.2}, pivots {:.2}, sum {:?}",
-                arguments.shape,
-                arguments.vertices,
-                arguments.solver,
-                counts.casts,
-                counts.contacts,
-                each(counts.steps.planar_problems),
-                counts.most_problems,
-                each(counts.steps.iterations),
-                counts.most_iterations,
-                each(counts.steps.supports),
-                each(counts.steps.pivots),
-                counts.sum
+                "solver,casts,contacts,problems,most problems,iterations,most iterations,supports,pivots,sum"
             );
+            for (solver, counts) in arguments.solvers.iter().zip(all) {
+                let each = |sum: u32| f64::from(sum) / f64::from(counts.casts);
+                println!(
+                    "{},{},{},{:.2},{},{:.1},{},{:.2},{:.2},{:?}",
+                    solver.name(),
+                    counts.casts,
+                    counts.contacts,
+                    each(counts.steps.planar_problems),
+                    counts.most_problems,
+                    each(counts.steps.iterations),
+                    counts.most_iterations,
+                    each(counts.steps.supports),
+                    each(counts.steps.pivots),
+                    counts.sum
+                );
+            }
             ExitCode::SUCCESS
         }
         Err(error) => {

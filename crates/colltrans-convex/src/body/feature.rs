@@ -78,12 +78,14 @@ pub(crate) fn feature_in_plane(
     vertex: u32,
     noise: f64,
 ) -> OwnFeature {
-    let vertices = body.vertices();
+    let (vertices, topology) = (body.vertices(), body.topology());
+    let neighbours = topology.neighbours(vertex);
+    if neighbours.is_empty() {
+        return OwnFeature::Vertex(vertex);
+    }
     let height = outward.dot(vertices[vertex as usize]);
     let slack = noise + body.hull_error();
     let in_plane = |w: u32| outward.dot(vertices[w as usize]) >= height - slack;
-    let topology = body.topology();
-    let neighbours = topology.neighbours(vertex);
     let (first, count) = body.plane_candidates(vertex, outward);
     let wrapped = |i: usize| if i >= neighbours.len() { i - neighbours.len() } else { i };
     // Bit `k` is set if candidate `k` is in the plane. The loop is written without branches because the outcomes are

@@ -1,14 +1,14 @@
 //! Distances of two placed convex bodies.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::{PairProof, rounded, verify};
-use crate::answer::{CertificateError, Distance, NearPoints, StartedFrom, Steps, Within};
-use crate::body::{ConvexPolyhedron, Features, feature_in_plane};
+use crate::answer::{CertificateError, Distance, NearPoints, PlaneGap, StartedFrom, Steps, Within};
+use crate::body::{ConvexPolyhedron, Features, OwnFeature, feature_in_plane};
 use crate::pair::{Pair, PairBody};
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::{TwoBodies, VertexPair, check_length};
-use crate::solve::nearest::{DescentResult, Difference, GapPlane, NearestPairs, nearest_points};
+use crate::solve::nearest::{DescentResult, Difference, NearestPairs, nearest_points};
 
 /// Largest accepted difference of the bounds, in noises, in addition to the reach of the bodies beyond
 /// support points.
@@ -34,9 +34,10 @@ impl PairBody for ConvexPolyhedron {
             found.supports += before;
             decided = decide_within(&difference, &found, length);
         }
+        let scratch = StartedFrom::Scratch;
         let answer = match decided {
             Some(decided) => decided,
-            None => Within::Undecided(distance_of_search(&difference, &found)?),
+            None => Within::Undecided(distance_of_search(&difference, &found, scratch)?),
         };
         Ok((answer, found.steps()))
     }
@@ -69,47 +70,58 @@ fn decide_within(difference: &Difference, found: &DescentResult, length: f64) ->
 pub fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, QueryError> {
     let difference = Difference::new(&pair.bodies);
     let found = nearest_points(&difference, pairs, None);
-    let is_new = pairs.is_empty();
+    let started_from = if pairs.is_empty() { StartedFrom::Scratch } else { StartedFrom::Features };
     *pairs = found.start_pairs();
-    let mut distance = distance_of_search(&difference, &found)?;
-    if !is_new {
-        distance.steps.started_from = StartedFrom::Features;
-    }
-    Ok(distance)
+    distance_of_search(&difference, &found, started_from)
 }
 
-/// Builds the answer from a search result.
+/// Builds the answer from a search result about the cores: the radii lower both bounds. The answer is built once, in the
+/// return slot.
 ///
-/// Returns [`QueryError::NotConverged`] if the bounds differ by more than rounding explains.
+/// Returns [`QueryError::NotConverged`] if the bounds of the cores differ by more than rounding explains.
+#[inline]
 fn distance_of_search(
     difference: &Difference,
     found: &DescentResult,
+    started_from: StartedFrom,
 ) -> Result<Distance, QueryError> {
     let bodies = difference.bodies;
+    let noise = difference.noise.point_error();
     let near = found.near_points(difference);
     let plane = found.separating_plane(difference);
     let beyond = plane.map_or(0.0, |plane| plane.excess);
     let plane = plane.filter(|plane| plane.gap.gap > 0.0);
-    let lower = plane.map_or(0.0, |plane| plane.gap.gap);
-    let tolerance = MAX_BOUND_GAP * difference.noise.point_error() + beyond;
-    if near.distance - lower > tolerance {
-        let reason = Stalled::Distance { lower, upper: near.distance, tolerance };
+    let core_gap = plane.map_or(0.0, |plane| plane.gap.gap);
+    let tolerance = MAX_BOUND_GAP * noise + beyond;
+    if near.distance - core_gap > tolerance {
+        let reason = Stalled::Distance { lower: core_gap, upper: near.distance, tolerance };
         return Err(QueryError::NotConverged { reason });
     }
-    let [on_moving, on_fixed] = bodies.core_points(&near.pairs, &near.weights);
-    let distance = Distance {
+    let cores = bodies.core_points(&near.pairs, &near.weights);
+    let upper = bodies.distance_less_radii(near.distance);
+    let steps = Steps { started_from, ..found.steps() };
+    let near = NearPoints { distance: upper, ..near };
+    let normal = plane.map_or(DVec3::ZERO, |plane| plane.gap.normal);
+    let lower = bodies.less_radii(core_gap);
+    let Some(plane) = plane.filter(|_| lower > 0.0) else {
+        let [on_moving, on_fixed] = rounded::surface_points(bodies, cores, upper, normal);
+        let (lower, normal, features, gap) = (0.0, None, None, None);
+        let answer =
+            Distance { lower, upper, on_moving, on_fixed, normal, features, near, gap, steps };
+        return Ok(answer);
+    };
+    let [on_moving, on_fixed] = bodies.surface_points_along(cores, normal);
+    Ok(Distance {
         lower,
-        upper: near.distance,
+        upper,
         on_moving,
         on_fixed,
-        normal: plane.map(|plane| plane.gap.normal),
-        features: plane
-            .map(|plane| facing_features(bodies, &plane, difference.noise.point_error())),
+        normal: Some(normal),
+        features: Some(facing_features(bodies, normal, plane.lowest, noise)),
         near,
-        gap: plane.map(|plane| plane.gap),
-        steps: found.steps(),
-    };
-    Ok(if bodies.is_rounded() { rounded::distance(bodies, distance) } else { distance })
+        gap: Some(PlaneGap { normal, gap: lower }),
+        steps,
+    })
 }
 
 /// Returns the nearest points of the moving and of the fixed body, in the world, rounded.
@@ -121,16 +133,20 @@ pub fn nearest_points_in_world(bodies: &TwoBodies, near: &NearPoints) -> [DVec3;
     rounded::surface_points(bodies, cores, near.distance, DVec3::ZERO)
 }
 
-/// Returns the features of the bodies in the planes perpendicular to the normal of `plane`. `noise` is the
-/// tolerance of coplanarity, in world units.
-fn facing_features(bodies: &TwoBodies, plane: &GapPlane, noise: f64) -> Features {
-    let normal = plane.gap.normal;
-    let VertexPair { moving, fixed } = plane.lowest;
-    let [out, back] = [bodies.moving_normal(normal), -bodies.fixed_normal(normal)];
+/// Returns the features of the bodies in the planes perpendicular to a unit normal through the vertices of `lowest`.
+/// `noise` is the tolerance of coplanarity, in world units.
+#[inline]
+fn facing_features(bodies: &TwoBodies, normal: DVec3, lowest: VertexPair, noise: f64) -> Features {
+    let feature = |body: &ConvexPolyhedron, rotation: &DMat3, outward: DVec3, vertex: u32| {
+        let own = if body.dimension() == 0 {
+            OwnFeature::Vertex(vertex)
+        } else {
+            feature_in_plane(body, rotation.transpose() * outward, vertex, noise)
+        };
+        own.with_input_numbers(body)
+    };
     Features {
-        moving: feature_in_plane(bodies.moving, out, moving.0, noise)
-            .with_input_numbers(bodies.moving),
-        fixed: feature_in_plane(bodies.fixed, back, fixed.0, noise)
-            .with_input_numbers(bodies.fixed),
+        moving: feature(bodies.moving, &bodies.moving_matrix, normal, lowest.moving.0),
+        fixed: feature(bodies.fixed, &bodies.fixed_matrix, -normal, lowest.fixed.0),
     }
 }

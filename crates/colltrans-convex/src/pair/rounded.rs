@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use crate::answer::{Distance, NearPoints, PlaneGap};
+use crate::answer::{NearPoints, PlaneGap};
 use crate::body::VertexHull;
 use crate::setting::TwoBodies;
 
@@ -17,26 +17,6 @@ pub(super) fn near_points(bodies: &TwoBodies, near: NearPoints) -> NearPoints {
 #[inline]
 pub(super) fn plane_gap(bodies: &TwoBodies, plane: PlaneGap) -> PlaneGap {
     PlaneGap { gap: bodies.less_radii(plane.gap), ..plane }
-}
-
-/// Returns the distance of rounded bodies, from that of their cores.
-pub(super) fn distance(bodies: &TwoBodies, cores: Distance) -> Distance {
-    let gap = cores.gap.map(|plane| plane_gap(bodies, plane)).filter(|plane| plane.gap > 0.0);
-    let near = near_points(bodies, cores.near);
-    let points = [cores.on_moving, cores.on_fixed];
-    let [on_moving, on_fixed] =
-        surface_points(bodies, points, near.distance, cores.normal.unwrap_or(DVec3::ZERO));
-    Distance {
-        lower: gap.map_or(0.0, |plane| plane.gap),
-        upper: near.distance,
-        on_moving,
-        on_fixed,
-        normal: gap.map(|plane| plane.normal),
-        features: cores.features.filter(|_| gap.is_some()),
-        near,
-        gap,
-        steps: cores.steps,
-    }
 }
 
 /// Returns the nearest points of bodies from those of their cores, in the world: one point of both bodies if a body is

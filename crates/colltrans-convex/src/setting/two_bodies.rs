@@ -166,7 +166,7 @@ impl<B: VertexHull> TwoBodies<'_, B> {
     /// Checks whether a body is rounded.
     #[inline]
     pub fn is_rounded(&self) -> bool {
-        self.radii_bounds().is_some()
+        self.moving.radius() + self.fixed.radius() != 0.0
     }
 
     /// Returns lower and upper bounds of the sum of `min_gap` and the radii of both bodies, in world units. They
@@ -175,9 +175,11 @@ impl<B: VertexHull> TwoBodies<'_, B> {
     /// The distance of rounded bodies is at least `min_gap` where that of their cores is at least this sum.
     #[inline]
     pub fn core_gap_bounds(&self, min_gap: f64) -> [f64; 2] {
-        self.radii_bounds().map_or([min_gap; 2], |[low, high]| {
-            [sum_bounds(low, min_gap)[0], sum_bounds(high, min_gap)[1]]
-        })
+        match self.radii_bounds() {
+            None => [min_gap; 2],
+            Some(radii) if min_gap == 0.0 => radii,
+            Some([low, high]) => [sum_bounds(low, min_gap)[0], sum_bounds(high, min_gap)[1]],
+        }
     }
 
     /// Returns the gap that the plane with this normal proves between the cores of the bodies, in world units,
@@ -287,7 +289,7 @@ impl TwoBodies<'_> {
         weights: &[f64; N],
     ) -> [DVec3; 2] {
         let mut means = [DVec3::ZERO; 2];
-        for (pair, &weight) in pairs.iter().zip(weights) {
+        for (pair, &weight) in pairs.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
             let [p, q] = self.vertices(*pair);
             means = [means[0] + p * weight, means[1] + q * weight];
         }

@@ -152,6 +152,12 @@ impl ConvexPolyhedron {
         2.0 * noise::GAIN * self.inertia.reach
     }
 
+    /// Returns the excess of a point, or of a segment beyond the end at which a rounded product is largest.
+    #[inline]
+    pub(crate) fn segment_excess(&self) -> f64 {
+        if self.dimension == 0 { 0.0 } else { self.scan_excess() }
+    }
+
     /// Computes the excess beyond a vertex. Returns `None` if a vertex gains more than `most`, or if the plateau is
     /// too large to visit and no bound up to `most` is found.
     fn excess_up_to(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<f64> {

@@ -241,6 +241,22 @@ impl ConvexPolyhedron {
         self.support.table_guess(direction)
     }
 
+    /// Returns a vertex near a point (body frame): the nearest one of a body that is small enough to scan, otherwise one
+    /// near the support point along the direction from the centre to the point.
+    #[inline]
+    pub(crate) fn vertex_near(&self, point: DVec3) -> u32 {
+        if !self.support.is_scanned() {
+            return self.support.table_guess(point - self.inertia.center);
+        }
+        let (mut nearest, mut least) = (0, f64::INFINITY);
+        for (k, vertex) in self.vertices.iter().enumerate() {
+            let square = vertex.distance_squared(point);
+            nearest = if square < least { k as u32 } else { nearest };
+            least = if square < least { square } else { least };
+        }
+        nearest
+    }
+
     /// Finds the support point along `direction`, starting from the vertex `guess`.
     #[inline]
     pub(crate) fn support_from_guess(&self, direction: DVec3, guess: u32) -> u32 {

@@ -77,21 +77,21 @@ impl<O: Observer> ConvexDifference<'_, '_, '_, O> {
         self.observer.search_started(frame);
     }
 
-    /// Builds the plane with this normal through a support point, and reports the support point to the
+    /// Builds the plane with this normal through the support point `at`, and reports the support point to the
     /// observer.
+    #[inline]
     fn report_plane(
         &mut self,
         normal: DVec3,
-        support: VertexPair,
+        (support, at): (VertexPair, DVec3),
         beyond: f64,
     ) -> SetPlane<VertexPair> {
         let setting = self.setting;
         self.observer.support(|| {
             let to_shadow = setting_from_shadow(setting).transpose();
-            let at = to_shadow * setting.difference_point(support);
-            Support { normal: to_shadow * normal, at, pair: support }
+            Support { normal: to_shadow * normal, at: to_shadow * at, pair: support }
         });
-        let height = normal.dot(self.setting.difference_point(support));
+        let height = normal.dot(at);
         let height = height - self.noise.lower_bound_margin() - beyond;
         SetPlane { normal, height, excess: beyond, support }
     }
@@ -110,7 +110,8 @@ impl<O: Observer> SampledSet for ConvexDifference<'_, '_, '_, O> {
             fixed: bodies.fixed.support(-normals[1]),
         };
         let (support, beyond) = bodies.support_with_excess(&normals, found);
-        (self.report_plane(normal, support, beyond), bodies.difference_point(support))
+        let at = bodies.difference_point(support);
+        (self.report_plane(normal, (support, at), beyond), at)
     }
 
     fn sample(&mut self, from: DVec3) -> DistanceSample<VertexPair, WeightedPairs> {
@@ -124,9 +125,10 @@ impl<O: Observer> SampledSet for ConvexDifference<'_, '_, '_, O> {
             self.supports += found.supports;
         }
         self.pairs = found.start_pairs();
-        let plane = found.gap_plane(&difference);
-        let plane =
-            plane.map(|plane| self.report_plane(plane.gap.normal, plane.lowest, plane.excess));
+        let plane = found.gap_plane(&difference).map(|plane| {
+            let at = self.setting.difference_point(plane.lowest);
+            self.report_plane(plane.gap.normal, (plane.lowest, at), plane.excess)
+        });
         let (pairs, weights) = found.weighted_pairs_and_weights();
         // In the frame of the setting, where the origin is the unmoved body.
         let corners = [0, 1, 2].map(|k| self.setting.difference_point(pairs[k]));
@@ -158,7 +160,8 @@ pub(crate) fn cast_with_min_gap<O: Observer>(
 ) -> Result<Outcome, QueryError> {
     *next = TrackerUpdate::default();
     let [_, gap] = setting.core_gap_bounds(options.min_gap);
-    if Noise::for_size(setting.size() + gap).is_below_noise(gap) {
+    let line = GapLine::new(setting.unit, gap, setting.size());
+    if line.noise.is_below_noise(gap) {
         let touching = Options { min_gap: 0.0, ..*options };
         let outcome = crate::solve::search(setting, &touching, focus, last, next, observer)?;
         if let Some(outcome) = lower_by_slight_gap(setting, options.min_gap, outcome) {
@@ -166,20 +169,19 @@ pub(crate) fn cast_with_min_gap<O: Observer>(
         }
     }
     let last = if focus.features { *last } else { WarmStart::Nothing };
-    find_gap_crossing(setting, options, &last, next, observer)
+    find_gap_crossing(setting, line, options, &last, next, observer)
 }
 
-/// Finds where the distance of the bodies first falls to the gap. Stores in `next` where a later search may
+/// Finds where the distance of the bodies first falls to the gap of a line. Stores in `next` where a later search may
 /// start.
 fn find_gap_crossing<O: Observer>(
     setting: &Setting,
+    line: GapLine,
     options: &Options,
     last: &WarmStart,
     next: &mut TrackerUpdate,
     observer: &mut O,
 ) -> Result<Outcome, QueryError> {
-    let [_, gap] = setting.core_gap_bounds(options.min_gap);
-    let line = GapLine::new(setting.unit, gap, setting.size());
     let pairs = NearestPairs::default();
     let bodies = ConvexDifference { setting, noise: line.noise, pairs, observer, supports: 0 };
     let mut search = GapSearch { options, line, bodies, steps: Steps::default() };
@@ -226,8 +228,9 @@ impl<'s, 'a, 'o, O: Observer> GapSearch<'s, 'a, 'o, O> {
             return None;
         }
         let pairs = [VertexPair::from_indices(0, 0), VertexPair::from_indices(p, q)];
-        let ends = pairs.map(|pair| setting.difference_point(pair));
-        let edge = ends[1] - ends[0];
+        let from = setting.difference_point(pairs[0]);
+        let ends = [from, if p + q == 0 { from } else { setting.difference_point(pairs[1]) }];
+        let edge = ends[1] - from;
         let (mut s, mut share) = (line.estimate_crossing(ends[0]), 0.0);
         if p + q == 1 {
             s = line.edge_crossing(ends);
@@ -244,9 +247,10 @@ impl<'s, 'a, 'o, O: Observer> GapSearch<'s, 'a, 'o, O> {
             normal -= edge * (normal.dot(edge) / edge.length_squared());
         }
         let normal = normal.try_normalize()?;
-        let lowest = pairs[usize::from(normal.dot(edge) < 0.0)];
+        let lowest = usize::from(normal.dot(edge) < 0.0);
         self.bodies.supports += 1;
-        let plane = self.bodies.report_plane(normal, lowest, setting.input_excess());
+        let support = (pairs[lowest], ends[lowest]);
+        let plane = self.bodies.report_plane(normal, support, setting.input_excess());
         let lower = line.lower_bound(&plane)?;
         let upper = line.crossing_upper_bound(point)?;
         let spot = if share < 1.0 {

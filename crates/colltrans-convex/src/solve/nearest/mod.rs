@@ -15,6 +15,7 @@
 mod closed_form;
 mod depth;
 mod gjk;
+mod point_start;
 pub mod simplex;
 mod winding;
 
@@ -343,12 +344,15 @@ fn search_until(difference: &Difference, start: &NearestPairs, goal: &Goal) -> D
     found
 }
 
-/// Returns the simplex of the given pairs. If there are none, returns a support point along the guessed direction.
+/// Returns the simplex of the given pairs. If there are none, returns that of a point and a polytope, or a support
+/// point along the guessed direction.
 fn starting_simplex(difference: &Difference, start: &NearestPairs) -> Simplex<f64> {
     let corners = start.iter().map(|pair| difference.corner_at(pair));
-    Simplex::from_corners(corners).unwrap_or_else(|| {
-        Simplex::new(difference.support_point(difference.guessed_direction(), None))
-    })
+    Simplex::from_corners(corners)
+        .or_else(|| point_start::starting_simplex(difference))
+        .unwrap_or_else(|| {
+            Simplex::new(difference.support_point(difference.guessed_direction(), None))
+        })
 }
 
 /// Computes the plane perpendicular to the simplex, and keeps it if its gap is larger.

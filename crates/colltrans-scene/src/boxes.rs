@@ -9,9 +9,12 @@
 //! - *Distances.* Differences, squares, their sum and its root have a relative error below `4 u`, because no rounded
 //!   numbers are subtracted. Squares do not overflow; underflow makes a bound smaller.
 //! - *Translations.* A difference divided by a component of the direction has a relative error below `3 u`.
+//! - *Rounded boxes.* A ball of radius `r` that sweeps a box is nearer by `r` and no more than that. Searches use these
+//!   bounds, checks of proofs the box around the rounded one.
 //!
-//! All bounds are monotone, also when rounded: for a box inside another one, the same computation returns at least the
-//! bound of the outer box. The bound of a box therefore also holds for the boxes inside it.
+//! All bounds except [`Sweep::entry`] are monotone, also when rounded: for a box inside another one, the same
+//! computation returns at least the bound of the outer box. The bound of a box therefore also holds for the boxes inside
+//! it. `Sweep::entry` only bounds what is inside the box that it is given.
 
 use glam::{DMat3, DVec3};
 
@@ -19,6 +22,8 @@ use colltrans_convex::body::{Aabb, ConvexPolyhedron, Placed, Pose};
 use colltrans_solid::body::Solid;
 use colltrans_solid::kinds::{AnyPlaced, ByKind};
 
+/// Maximum number of steps of Newton's method towards the entry of a rounded box (measured).
+const MAX_NEWTON_STEPS: usize = 4;
 /// Unit roundoff `u`.
 const ROUNDING: f64 = 0.5 * f64::EPSILON;
 /// Margin of a box, relative to the size of its coordinates.
@@ -31,17 +36,54 @@ const MAX_SCANNED_VERTICES: usize = 32;
 /// Maximum number of visited nodes of the tree of a solid.
 const MAX_TREE_BOXES: usize = 16;
 
+/// A box swept by a ball: it contains a body whose core is in the box.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RoundedBox {
+    core: Aabb,
+    radius: f64,
+}
+
+impl RoundedBox {
+    /// Returns a box that contains the core of a placed body and its input points, with the radius of the body.
+    pub(super) fn of_placed(placed: &AnyPlaced<'_>) -> Self {
+        let (core, radius) = match placed {
+            ByKind::Convex(Placed { body, pose }) => (bounds_of_convex(body, pose), body.radius()),
+            ByKind::Solid(Placed { body, pose }) => (bounds_of_solid(body, pose), body.radius()),
+        };
+        Self { core, radius }
+    }
+
+    /// Returns the box with a radius that is larger by a length, rounded up.
+    pub(super) fn widened(self, by: f64) -> Self {
+        let sum = self.radius + by;
+        let is_exact = self.radius == 0.0 || by == 0.0;
+        Self { radius: if is_exact { sum } else { sum.next_up() }, ..self }
+    }
+
+    /// Returns a box that contains all points within the radius of the core.
+    pub(super) fn outer_box(&self) -> Aabb {
+        let Self { core, radius } = *self;
+        if radius == 0.0 {
+            return core;
+        }
+        let size = core.low.abs().max(core.high.abs()).max_element() + radius;
+        core.expanded(radius + 16.0 * f64::EPSILON * size)
+    }
+
+    /// Returns a lower bound of the distance from a box.
+    #[inline]
+    pub(super) fn distance(&self, other: &Aabb) -> f64 {
+        let of_core = box_distance(&self.core, other);
+        if self.radius == 0.0 {
+            return of_core;
+        }
+        ((of_core - self.radius) * (1.0 - BOUND_ERROR)).max(0.0)
+    }
+}
+
 /// Returns a box that contains a placed body and its input points: the box of its core, grown by its radius.
 pub(super) fn bounds_of_placed(placed: &AnyPlaced<'_>) -> Aabb {
-    let (bounds, radius) = match placed {
-        ByKind::Convex(Placed { body, pose }) => (bounds_of_convex(body, pose), body.radius()),
-        ByKind::Solid(Placed { body, pose }) => (bounds_of_solid(body, pose), body.radius()),
-    };
-    if radius == 0.0 {
-        return bounds;
-    }
-    let size = bounds.low.abs().max(bounds.high.abs()).max_element() + radius;
-    bounds.expanded(radius + 16.0 * f64::EPSILON * size)
+    RoundedBox::of_placed(placed).outer_box()
 }
 
 /// Returns a box that contains the core of a convex body and its input points.
@@ -126,25 +168,26 @@ pub(super) fn box_distance(a: &Aabb, b: &Aabb) -> f64 {
     gap.length() * (1.0 - BOUND_ERROR)
 }
 
-/// A box that moves along a direction.
+/// A rounded box that moves along a direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sweep {
-    moving: Aabb,
+    moving: RoundedBox,
+    outer_box: Aabb,
     direction: DVec3,
     inverse: DVec3,
 }
 
 impl Sweep {
-    /// Builds the sweep of a box along a direction that is valid for a cast.
-    pub(super) fn new(moving: Aabb, direction: DVec3) -> Self {
-        Self { moving, direction, inverse: direction.recip() }
+    /// Builds the sweep of a rounded box along a direction that is valid for a cast.
+    pub(super) fn new(moving: RoundedBox, direction: DVec3) -> Self {
+        Self { moving, outer_box: moving.outer_box(), direction, inverse: direction.recip() }
     }
 
-    /// Returns a translation, in multiples of the direction, before which the moving box does not meet another box.
-    /// Returns 0 if they may overlap at the start, and infinity if they never meet ahead.
+    /// Returns a translation, in multiples of the direction, before which the outer box of the moving one does not meet
+    /// another box. Returns 0 if they may overlap at the start, and infinity if they never meet ahead.
     #[inline]
-    pub(super) fn entry(&self, other: &Aabb) -> f64 {
-        let (near, far) = (other.low - self.moving.high, other.high - self.moving.low);
+    pub(super) fn entry_of_outer_box(&self, other: &Aabb) -> f64 {
+        let (near, far) = (other.low - self.outer_box.high, other.high - self.outer_box.low);
         let (mut first, mut last) = (0.0_f64, f64::INFINITY);
         for k in 0..3 {
             if self.direction[k] == 0.0 {
@@ -159,5 +202,62 @@ impl Sweep {
             last = last.min(b + b.abs() * BOUND_ERROR);
         }
         if first > last { f64::INFINITY } else { first }
+    }
+
+    /// Returns a translation, in multiples of the direction, before which the moving box does not meet another box. It
+    /// is at least [`Self::entry_of_outer_box`].
+    ///
+    /// The differences of points of the other box and the core form a box `D`. The boxes meet where the distance of
+    /// `t d` from `D` is at most the radius. This distance is a convex function of `t`. Newton's method from a smaller
+    /// translation therefore approaches the entry from below. Each step is the bound of the plane through the point of
+    /// `D` nearest to `t d` ([`Self::entry_of_plane`]), which is proven whatever `t` is.
+    #[inline]
+    pub(super) fn entry(&self, other: &Aabb) -> f64 {
+        let mut first = self.entry_of_outer_box(other);
+        if self.moving.radius == 0.0 {
+            return first;
+        }
+        let Aabb { low, high } = self.moving.core;
+        let (near, far) = (other.low - high, other.high - low);
+        for _ in 0..MAX_NEWTON_STEPS {
+            if first == f64::INFINITY {
+                break;
+            }
+            let at = self.direction * first;
+            let nearest = at.max(near).min(far);
+            let next = self.entry_of_plane(nearest, nearest - at);
+            if next <= first {
+                break;
+            }
+            first = next;
+        }
+        first
+    }
+
+    /// Returns the translation before which a plane keeps the ball of the radius around `t d` from `D`; 0 if it
+    /// proves none or the normal is not longer than the radius, infinity if the plane separates them ahead.
+    ///
+    /// A component of `normal` may be positive only where `corner` is on the lower side of `D`, and negative only where
+    /// it is on the upper one. Therefore no point `y` of `D` is lower: `n.y >= n.corner`. The ball touches `D` at `t`
+    /// only if `t n.d >= n.corner - r |n|`. The rounding of `normal` does not matter. The products have an error of at
+    /// most `4 u` each, including that of the corner, `r |n|` one of `3.5 u`, and the differences add `2 u`. Together
+    /// this is less than [`BOUND_ERROR`] of the sum of the magnitudes. Underflow is negligible, because `|n| > r`, and a
+    /// radius is at least `2^-200`.
+    #[inline]
+    fn entry_of_plane(&self, corner: DVec3, normal: DVec3) -> f64 {
+        let (size, length) = (normal.abs(), normal.length());
+        if length <= self.moving.radius {
+            return 0.0;
+        }
+        let reach = self.moving.radius * length;
+        let ahead = normal.dot(corner) - reach - BOUND_ERROR * (size.dot(corner.abs()) + reach);
+        let along = normal.dot(self.direction) + BOUND_ERROR * size.dot(self.direction.abs());
+        if ahead.is_nan() || ahead <= 0.0 {
+            0.0
+        } else if along <= 0.0 {
+            f64::INFINITY
+        } else {
+            ahead / along * (1.0 - BOUND_ERROR)
+        }
     }
 }

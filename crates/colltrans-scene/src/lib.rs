@@ -34,6 +34,7 @@ use std::fmt;
 use glam::DVec3;
 
 pub use answer::{Nearby, Nearest, SceneClearance};
+use boxes::{RoundedBox, Sweep};
 pub use bulk::{DirectionMap, FixedRotations};
 use colltrans_convex::ConvexPolyhedron;
 use colltrans_convex::body::{Aabb, ObstacleId, Pose};
@@ -91,6 +92,9 @@ type IgnoredPredicate<'a> = &'a (dyn Fn(ObstacleId) -> bool + Sync);
 pub struct SceneQuery<'a> {
     moving: AnyPlaced<'a>,
     obstacles: &'a Obstacles,
+    /// The moving body lies in it.
+    rounded: RoundedBox,
+    /// Box around `rounded`.
     bounds: Aabb,
     ignored: Option<IgnoredPredicate<'a>>,
     options: Options,
@@ -132,10 +136,12 @@ impl<'a> SceneQuery<'a> {
             ByKind::Solid(_) if counts.faceless > 0 => obstacles.check_all_have_faces()?,
             _ => {}
         }
+        let rounded = RoundedBox::of_placed(&moving);
         Ok(Self {
             moving,
             obstacles,
-            bounds: boxes::bounds_of_placed(&moving),
+            rounded,
+            bounds: rounded.outer_box(),
             ignored: None,
             options: Options::default(),
             solid_options: SolidOptions::default(),
@@ -191,16 +197,10 @@ impl<'a> SceneQuery<'a> {
         self.obstacles
     }
 
-    /// Returns the box of the moving body, enlarged by the minimum gap of casts and a margin for rounding.
-    fn query_box(&self) -> Aabb {
+    /// Returns the sweep of the moving body along a direction, where the minimum gap of casts is added to its radius.
+    fn sweep(&self, direction: DVec3) -> Sweep {
         let min_gap = self.options.min_gap.max(self.solid_options.min_gap);
-        if min_gap > 0.0 {
-            let Aabb { low, high } = self.bounds;
-            let size = low.abs().max(high.abs()).max_element() + min_gap;
-            self.bounds.expanded(min_gap + 16.0 * f64::EPSILON * size)
-        } else {
-            self.bounds
-        }
+        Sweep::new(self.rounded.widened(min_gap), direction)
     }
 
     /// Checks whether queries ignore an obstacle.

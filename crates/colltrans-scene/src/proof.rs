@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use glam::DVec3;
 
-use super::boxes::{self, Sweep};
+use super::boxes;
 use super::obstacles::Obstacle;
 use super::search::Closeness;
 use super::{ByKind, Nearby, Nearest, SceneClearance, SceneQuery};
@@ -162,16 +162,20 @@ impl<'a> SceneQuery<'a> {
             self.obstacles_below(length.next_up(), |other| boxes::box_distance(&self.bounds, other))
         {
             let of_one = |e: QueryError| e.of_obstacle(one.id);
-            if let Closeness::Farther = self.closeness_of(one, length).map_err(of_one)? {
-                match self.prove_apart(one, length).map_err(of_one)? {
+            match self.closeness_of(one, length).map_err(of_one)? {
+                Closeness::Closer(_) => {}
+                // The rounded box of the moving body may have decided in the search.
+                Closeness::Undecided(_) => proof.undecided.push(one.id),
+                Closeness::Farther => match self.prove_apart(one, length).map_err(of_one)? {
                     Some(apart) if claimed_distance(&apart) > length => {
                         proof.apart.push((one.id, apart));
                     }
                     _ => proof.undecided.push(one.id),
-                }
+                },
             }
         }
         proof.undecided.sort_unstable();
+        proof.undecided.dedup();
         Ok((nearby, proof))
     }
 
@@ -221,9 +225,9 @@ impl<'a> SceneQuery<'a> {
         if clearance.safe_translation().is_none() {
             return stop.into_iter().collect();
         }
-        let sweep = Sweep::new(self.query_box(), direction);
+        let sweep = self.sweep(direction);
         let below = clearance.lower.max(f64::MIN_POSITIVE);
-        let mut found = self.obstacles_below(below, |other| sweep.entry(other));
+        let mut found = self.obstacles_below(below, |other| sweep.entry_of_outer_box(other));
         if let Some(stop) = stop
             && let Err(place) = found.binary_search_by_key(&stop.id, |one| one.id)
         {

@@ -2,8 +2,6 @@
 
 use glam::DVec3;
 
-use super::boxes;
-use super::boxes::Sweep;
 use super::obstacles::Obstacle;
 use super::{ByKind, Nearby, Nearest, SceneClearance, SceneQuery, SceneSteps};
 use colltrans_convex::answer::{Clearance, Within};
@@ -28,7 +26,7 @@ impl SceneQuery<'_> {
     pub fn nearest(&self) -> Result<Option<Nearest>, QueryError> {
         let mut best: Option<(ObstacleId, AnyDistance)> = None;
         let (mut lower, mut limit, mut bodies) = (f64::INFINITY, f64::INFINITY, 0);
-        let bound = |other: &_| boxes::box_distance(&self.bounds, other);
+        let bound = |other: &_| self.rounded.distance(other);
         let boxes = self.obstacles.tree().visit_by_bound(limit, bound, |item, bound| {
             let obstacle = self.obstacle_of_item(item);
             let id = obstacle.id;
@@ -77,7 +75,7 @@ impl SceneQuery<'_> {
     pub fn within(&self, length: f64) -> Result<Nearby, QueryError> {
         check_length(length)?;
         let mut nearby = Nearby::default();
-        let bound = |other: &_| boxes::box_distance(&self.bounds, other);
+        let bound = |other: &_| self.rounded.distance(other);
         let boxes = self.obstacles.tree().visit_by_bound(length, bound, |item, _| {
             let obstacle = self.obstacle_of_item(item);
             if !self.is_ignored(obstacle.id) {
@@ -137,7 +135,7 @@ impl SceneQuery<'_> {
     /// Computes how far the moving body can move along a direction of any length, and the obstacle that stops it.
     ///
     /// The answer is that of [`Cast::clearance`] of each obstacle. Obstacles behind the body do not stop it, nor do
-    /// those along which it slides within the graze tolerance, nor those whose boxes the swept box does not meet. For
+    /// those along which it slides within the graze tolerance, nor those whose boxes the swept rounded box does not meet. For
     /// the first obstacle within a limited travel, see [`Self::clearance_before`].
     ///
     /// # Errors
@@ -159,7 +157,7 @@ impl SceneQuery<'_> {
     ) -> Result<SceneClearance, QueryError> {
         check_direction(direction)?;
         check_length(end)?;
-        let sweep = Sweep::new(self.query_box(), direction);
+        let sweep = self.sweep(direction);
         let mut stop: Option<(ObstacleId, AnyClearance)> = None;
         let (mut lower, mut upper, mut bodies) = (end, end, 0);
         let entry = |other: &_| sweep.entry(other);

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::boxes::{self, Sweep};
+use super::boxes;
 use super::obstacles::Obstacle;
 use super::proof::{
     ApartProof, ClearanceProof, NearbyProof, NearestProof, ObstacleClearanceProof, SceneProof,
@@ -110,11 +110,12 @@ impl SceneQuery<'_> {
         {
             return Err(CertificateError::Order { lower: *lower, upper });
         }
-        let sweep = Sweep::new(self.query_box(), *direction);
+        let sweep = self.sweep(*direction);
         for one in self.queried_obstacles() {
             let named = bounds.get(&one.id).map(|[lower, _]| *lower);
-            let proven =
-                named.unwrap_or_else(|| sweep.entry(&boxes::bounds_of_placed(&one.placed())));
+            let proven = named.unwrap_or_else(|| {
+                sweep.entry_of_outer_box(&boxes::bounds_of_placed(&one.placed()))
+            });
             // An obstacle with a contact at 0 needs a proof, because its box excludes nothing there.
             require_proof(proven >= *lower && (proven > 0.0 || named.is_some()), one.id)?;
         }

@@ -3,7 +3,9 @@
 
 use std::sync::Arc;
 
-use colltrans_convex::{CertificateError, ConvexPolyhedron, ObstacleId, Options, Pose, QueryError};
+use colltrans_convex::{
+    CertificateError, Clearance, ConvexPolyhedron, ObstacleId, Options, Pose, QueryError,
+};
 use colltrans_scene::{Obstacles, SceneQuery};
 use colltrans_solid::{ByKind, Solid};
 use colltrans_testkit::bodies::{at_xyz as at, block as cuboid};
@@ -321,4 +323,118 @@ fn rounded_solids_match_queries_of_single_obstacles() {
         let least = single.map(|one| one.unwrap_or(f64::INFINITY)).fold(f64::INFINITY, f64::min);
         assert!((found.lower - least).abs() < 1e-9 || found.lower == least, "{found:?} {least}");
     }
+}
+
+/// A ball is bounded by its reach, not by the cube around it: the points in the corners of the cube are not queried.
+#[test]
+fn ball_among_many_points_queries_few_of_them() {
+    let mut random = Random::new(0xba11);
+    let point = Arc::new(ConvexPolyhedron::from_points(&[DVec3::ZERO]).expect("a point"));
+    let points: Vec<DVec3> = (0..20_000).map(|_| random.vector()).collect();
+    let mut scene = Obstacles::new();
+    scene.insert_all(points.iter().map(|p| (point.clone(), at(p.x, p.y, p.z))));
+    let radius = 0.25;
+    let ball = ConvexPolyhedron::sphere(DVec3::ZERO, radius).expect("a ball");
+    let count = cases(100);
+    let mut bodies = [0; 3];
+    for k in 0..count {
+        let start = random.direction() * 3.0;
+        let direction = if k % 2 == 0 {
+            (random.vector() * 0.5 - start).normalize()
+        } else {
+            random.pick(&[DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z])
+        };
+        let query = SceneQuery::new(ball.at(at(start.x, start.y, start.z)), &scene);
+        let query = query.expect("a query");
+        let nearest = query.nearest().expect("an answer").expect("points");
+        let least = points.iter().map(|p| p.distance(start)).fold(f64::INFINITY, f64::min);
+        assert!((nearest.distance.upper() - (least - radius)).abs() < 1e-13, "{nearest:?}");
+        let within = query.within(2.0).expect("an answer");
+        let closer = points.iter().filter(|p| p.distance(start) - radius < 2.0).count();
+        assert_eq!(within.closer.len(), closer);
+        let entry = |p: &DVec3| {
+            let way = *p - start;
+            let lateral = way.reject_from_normalized(direction).length();
+            let along = way.dot(direction);
+            let is_ahead = lateral < radius && along > 0.0;
+            is_ahead.then(|| along - ((radius - lateral) * (radius + lateral)).sqrt())
+        };
+        let first = points.iter().filter_map(entry).fold(f64::INFINITY, f64::min);
+        let found = query.clearance(direction).expect("an answer");
+        assert!((found.lower - first).abs() < 1e-10 || found.lower == first, "{found:?} {first}");
+        let of_query =
+            [nearest.steps.bodies, within.steps.bodies - closer as u32, found.steps.bodies];
+        bodies = [0, 1, 2].map(|k| bodies[k] + of_query[k]);
+    }
+    // One obstacle for each answer, and few others.
+    assert!(bodies.iter().all(|n| u64::from(*n) < 3 * count), "{bodies:?} of {count}");
+}
+
+/// Searches bound rounded bodies and minimum gaps exactly. The answers are those of querying all obstacles.
+#[test]
+fn rounded_bodies_with_minimum_gaps_match_single_queries() {
+    let mut random = Random::new(0x9a9);
+    let bar = cuboid(DVec3::ZERO, DVec3::new(0.125, 0.25, 0.75));
+    let segment = [DVec3::NEG_X * 0.5, DVec3::X * 0.25];
+    let bodies = [
+        ConvexPolyhedron::sphere(DVec3::ZERO, 0.5).expect("a sphere"),
+        ConvexPolyhedron::capsule(segment, 0.25).expect("a capsule"),
+        bar.clone().rounded(0.375).expect("a body"),
+        bar,
+    ];
+    let mut stopped = 0;
+    for round in 0..cases(60) {
+        let mut scene = Obstacles::new();
+        let ids: Vec<ObstacleId> = grid_poses(5, &mut random)
+            .iter()
+            .enumerate()
+            .map(|(k, pose)| {
+                let place = pose.translation() * 2.0 + random.vector() * 0.5;
+                let pose = Pose::from_matrix(pose.matrix(), place).expect("a pose");
+                scene.insert(bodies[k % 4].clone(), pose)
+            })
+            .collect();
+        let place = (random.vector() * 0.5 + DVec3::splat(0.5)) * 10.0;
+        let pose = Pose::new(random.rotation(), place).expect("a pose");
+        let min_gap = random.pick(&[0.0, 0.125, 0.75]);
+        let query = SceneQuery::new(bodies[round as usize % 4].at(pose), &scene).expect("a query");
+        let query = query.with_options(Options::default().with_min_gap(min_gap)).expect("a gap");
+        let direction = if random.one_in(2) { random.direction() } else { DVec3::NEG_Z };
+
+        let nearest = query.nearest().expect("an answer").expect("obstacles");
+        let distances = ids.iter().map(|id| match query.pair_with(*id).expect("a pair") {
+            ByKind::Convex(pair) => pair.distance().expect("a distance").upper,
+            ByKind::Solid(_) => unreachable!("all are convex"),
+        });
+        let least = distances.clone().fold(f64::INFINITY, f64::min);
+        assert_eq!(nearest.distance.upper(), least);
+        let within = query.within(1.0).expect("an answer");
+        let closer = distances.filter(|upper| *upper <= 1.0).count();
+        assert_eq!(within.closer.len() + within.undecided.len(), closer);
+
+        let found = query.clearance(direction).expect("an answer");
+        let upper_of = |clearance: &Clearance| match clearance {
+            Clearance::Blocked { contact, .. } => contact.certificate.upper,
+            Clearance::Overlapping(_) => f64::NEG_INFINITY,
+            Clearance::Free(_) => f64::INFINITY,
+        };
+        let singles = ids.iter().map(|id| match query.cast_with(*id, direction).expect("a cast") {
+            ByKind::Convex(cast) => (upper_of(&cast.clearance().expect("an answer")), *id),
+            ByKind::Solid(_) => unreachable!("all are convex"),
+        });
+        let first = singles.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let (upper, id) = first.expect("obstacles");
+        match found.stop {
+            Some((stop, ByKind::Convex(clearance))) => {
+                assert_eq!((stop, upper_of(&clearance)), (id, upper));
+                stopped += 1;
+            }
+            _ => assert_eq!(upper, f64::INFINITY),
+        }
+        let (_, proof) = query.certified_clearance(direction).expect("an answer");
+        assert!(query.verify(&proof).is_ok());
+        let (_, proof) = query.certified_within(1.0).expect("an answer");
+        assert!(query.verify(&proof).is_ok());
+    }
+    assert!(stopped > cases(20), "{stopped}");
 }

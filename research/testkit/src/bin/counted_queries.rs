@@ -1,4 +1,4 @@
-//! `counted_queries`: answers 40 named queries, each in one call of [`counted`], so that callgrind counts the
+//! `counted_queries`: answers named queries, each in one call of [`counted`], so that callgrind counts the
 //! instructions of each.
 //!
 //! `.ci/instructions.py` runs it and compares the counts with `docs/measurements/`. A query is a number of calls with
@@ -14,7 +14,7 @@ use colltrans::{
     Cast, ConvexPolyhedron, FixedRotations, Obstacles, Options, Outcome, Pair, Pose, SceneQuery,
     Solid, Solver, Tracker, cta,
 };
-use colltrans_testkit::bodies::{at_xyz, body, cube, hull, solid};
+use colltrans_testkit::bodies::{at_xyz, body, centered, cube, hull, solid};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{prism, random_hull, ring_sphere};
 use colltrans_testkit::solids::{bumpy_ball, comb, pin, washer};
@@ -132,6 +132,7 @@ fn casts() -> Vec<Named> {
             drop(black_box(cast.with_min_gap(0.125).expect("a gap").first_contact()));
         }),
         casting("rounded_ring_32", rounded, first),
+        casting("cast_spheres", [sphere(), sphere()], first),
         tracking("tracked_ring_128", rings(11, 11)),
         tracking("tracked_ring_2000", rings(45, 44)),
         fixed_rotations("faces_hull_8", hulls(8), false),
@@ -192,11 +193,23 @@ fn pairing(
     })
 }
 
+fn sphere() -> ConvexPolyhedron {
+    ConvexPolyhedron::sphere(DVec3::ZERO, 0.5).expect("a sphere")
+}
+
 fn distances() -> Vec<Named> {
     let distance = |pair: &Pair<'_>| drop(black_box(pair.distance()));
     let rounded = hulls(32).map(|body| body.rounded(0.25).expect("a radius"));
+    let capsule = ConvexPolyhedron::capsule([DVec3::NEG_X, DVec3::X], 0.25).expect("a capsule");
+    let [hull, _] = hulls(32);
     vec![
+        pairing("distance_spheres", [sphere(), sphere()], 3.0, distance),
+        pairing("distance_sphere_capsule", [sphere(), capsule.clone()], 3.0, distance),
+        pairing("distance_capsules", [capsule.clone(), capsule], 3.0, distance),
+        pairing("distance_sphere_box", [sphere(), centered([0.5, 0.75, 1.0])], 3.0, distance),
+        pairing("distance_sphere_hull_32", [sphere(), hull], 3.0, distance),
         pairing("distance_hull_8", hulls(8), 3.0, distance),
+        pairing("distance_hull_32", hulls(32), 3.0, distance),
         pairing("distance_hull_128", hulls(128), 3.0, distance),
         pairing("distance_hull_2000", hulls(2000), 3.0, distance),
         pairing("distance_rounded_hull_32", rounded, 3.0, distance),

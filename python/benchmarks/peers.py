@@ -15,16 +15,16 @@ bounds. *missed* contacts were not found, *invented* contacts do not exist, *off
 by more than 1e-6 (the bodies have radius 1), and *stuck* loops did not end.
 """
 
-import sys
+import argparse
 import time
 from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
 import colltrans
-from colltrans import Contact, ConvexPolyhedron
+from colltrans import Contact, ConvexPolyhedron, Solid, SolidBlocked
 
-LIMIT, STEPS, OFF = 1e-9, 100, 1e-6
+LIMIT, STEPS, OFF, RADIUS = 1e-9, 100, 1e-6, 0.1
 DOWN = np.array([0.0, 0.0, -1.0])
 
 
@@ -298,16 +298,82 @@ PEERS = {
 }
 
 
+def torus(facets):
+    """Returns the points and triangles of a torus with waves."""
+    n = round((facets / 2) ** 0.5)
+    u, v = np.meshgrid(*[2 * np.pi * np.arange(n) / n] * 2, indexing="ij")
+    r = 0.4 + 0.02 * np.sin(9 * u) * np.sin(7 * v)
+    w = 1 + r * np.cos(v)
+    points = np.stack([w * np.cos(u), w * np.sin(u), r * np.sin(v)], axis=-1).reshape(-1, 3)
+    a = np.arange(n * n).reshape(n, n)
+    b, c = np.roll(a, -1, 0), np.roll(a, -1, 1)
+    d = np.roll(b, -1, 1)
+    faces = [np.stack(corners, axis=-1).reshape(-1, 3) for corners in ([a, b, d], [a, d, c])]
+    return points, np.concatenate(faces)
+
+
+def fcl_sphere_and_mesh(points, faces):
+    import fcl
+
+    mesh = fcl.BVHModel()
+    mesh.beginModel(len(points), len(faces))
+    mesh.addSubModel(points, faces)
+    mesh.endModel()
+    return fcl.CollisionObject(fcl.Sphere(RADIUS)), fcl.CollisionObject(mesh)
+
+
+def fcl_distance_to_mesh(sphere, mesh):
+    import fcl
+
+    def ask(start, _):
+        def distance(t):
+            sphere.setTranslation(start + t * DOWN)
+            # The plane at the nearest point does not bound a mesh that is not convex. The gap does.
+            return fcl.distance(sphere, mesh), DOWN
+
+        return advance(distance)
+
+    return ask
+
+
+def drop_on_mesh(facets, rows):
+    """Compares drops of a sphere on a mesh with python-fcl."""
+    points, faces = torus(facets)
+    sphere, mesh = ConvexPolyhedron.sphere(RADIUS), Solid(points, faces)
+    pose = np.array([0.0, 0, 0, 0, 0, 0, 1])
+
+    def ours(start, _):
+        pose[:3] = start
+        answer = colltrans.clearance(sphere, mesh, DOWN, moving_pose=pose)
+        return answer.distance if isinstance(answer, SolidBlocked) else None
+
+    asked = {"colltrans": ours}
+    try:
+        asked["python-fcl, distance"] = fcl_distance_to_mesh(*fcl_sphere_and_mesh(points, faces))
+    except ImportError as error:
+        print(f"python-fcl is not installed: {error}")
+    _, starts, turns = settings(8, rows)
+    known = []
+    for start in starts:
+        pose[:3] = start
+        answer = colltrans.clearance(sphere, mesh, DOWN, moving_pose=pose)
+        is_hit = isinstance(answer, SolidBlocked)
+        known.append(answer.contact.translation_bounds if is_hit else None)
+    hits = sum(bounds is not None for bounds in known)
+    print(f"\nsphere on {len(faces)} triangles, {rows} rows, {hits} contacts\n")
+    compare(asked, starts, turns, known)
+
+
 def judged(found, known):
     """Returns the error of a row if both found a contact, otherwise a word for its result."""
     if found is not None and np.isnan(found):
         return "stuck"
-    if not isinstance(known, Contact):
+    if known is None:
         return "invented" if found is not None else None
     if found is None:
         return "missed"
-    proof = known.certificate
-    return max(proof.lower - found, found - proof.upper, 0.0)
+    lower, upper = known
+    return max(lower - found, found - upper, 0.0)
 
 
 def line(name, spent, again, verdicts):
@@ -326,40 +392,54 @@ def timed(ask, start, turn):
     return found, time.perf_counter() - began
 
 
+def compare(asked, starts, turns, known):
+    """Measures the contestants in turns, and prints a line for each."""
+    print(
+        "| who | us a cast, median, in turns | hot | largest error "
+        "| missed | invented | off | stuck |"
+    )
+    print("|---|---:|---:|---:|---:|---:|---:|---:|")
+    spent, again, verdicts = ({name: [] for name in asked} for _ in range(3))
+    names = list(asked)
+    for row, (start, turn, truth) in enumerate(zip(starts, turns, known, strict=True)):
+        first = row % len(names)
+        for name in names[first:] + names[:first]:
+            found, time_in_turns = timed(asked[name], start, turn)
+            spent[name].append(time_in_turns)
+            again[name].append(timed(asked[name], start, turn)[1])
+            verdicts[name].append(judged(found, truth))
+    for name in names:
+        print(line(name, spent[name], again[name], verdicts[name]), flush=True)
+
+
 def main():
-    rows = int(sys.argv[1]) if len(sys.argv) > 1 else 300
+    parser = argparse.ArgumentParser(description="Compares casts with other packages.")
+    parser.add_argument("rows", nargs="?", type=int, default=300)
+    parser.add_argument("--mesh", metavar="FACETS", type=int)
+    arguments = parser.parse_args()
+    rows = arguments.rows
+    if arguments.mesh is not None:
+        drop_on_mesh(arguments.mesh, rows)
+        return
     for vertices in (8, 128):
         clouds, starts, turns = settings(vertices, rows)
         bodies = [ConvexPolyhedron(cloud) for cloud in clouds]
-        known = [
+        answers = [
             colltrans.cast(*bodies, DOWN, moving_pose=np.r_[start, turn])
             for start, turn in zip(starts, turns, strict=True)
         ]
-        assert all(not isinstance(k, Contact) or k.certificate.verify() < 1e-9 for k in known)
-        hits = sum(isinstance(k, Contact) for k in known)
+        proofs = [a.certificate if isinstance(a, Contact) else None for a in answers]
+        assert all(proof is None or proof.verify() < 1e-9 for proof in proofs)
+        known = [None if proof is None else (proof.lower, proof.upper) for proof in proofs]
+        hits = sum(bounds is not None for bounds in known)
         print(f"\n{vertices} vertices, {rows} rows, {hits} contacts\n")
-        print(
-            "| who | us a cast, median, in turns | hot | largest error "
-            "| missed | invented | off | stuck |"
-        )
-        print("|---|---:|---:|---:|---:|---:|---:|---:|")
         asked = {}
         for name, (package, make) in PEERS.items():
             try:
                 asked[f"{name} ({version(package)})"] = make(bodies)
             except (PackageNotFoundError, ImportError) as error:
-                print(f"| {name} | not installed: {error} | | | | | | |")
-        spent, again, verdicts = ({name: [] for name in asked} for _ in range(3))
-        names = list(asked)
-        for row, (start, turn, truth) in enumerate(zip(starts, turns, known, strict=True)):
-            first = row % len(names)
-            for name in names[first:] + names[:first]:
-                found, time_in_turns = timed(asked[name], start, turn)
-                spent[name].append(time_in_turns)
-                again[name].append(timed(asked[name], start, turn)[1])
-                verdicts[name].append(judged(found, truth))
-        for name in names:
-            print(line(name, spent[name], again[name], verdicts[name]), flush=True)
+                print(f"{name} is not installed: {error}")
+        compare(asked, starts, turns, known)
 
 
 if __name__ == "__main__":

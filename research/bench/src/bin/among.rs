@@ -5,12 +5,17 @@
 //! random directions. Both libraries answer each query, in turns. The figures are medians of the times and of
 //! the queries' ratios. The time to build a scene is processor time of the thread, the mean of nine builds.
 //! Then boxes move, slightly and anywhere, and the queries are repeated.
+//!
+//! `--points N` drops a point and a ball on the N points of a scan instead, and counts the boxes that are visited and
+//! the points that are queried. *cube* is the number of points that the cube around the ball does not exclude: those
+//! that a proof names.
 
 use std::process::ExitCode;
 use std::sync::Arc;
 
+use clap::Args;
 use colltrans::{ConvexPolyhedron, ObstacleId, Obstacles, Pose, SceneQuery};
-use colltrans_bench::harness::{self, Run};
+use colltrans_bench::harness::{self, Failure, Run};
 use colltrans_bench::parry::{self, ParrySetting};
 use colltrans_bench::times::{Clock, Comparison, Times};
 use colltrans_testkit::random::Random;
@@ -34,7 +39,13 @@ const PROXIMITY: f64 = 0.5;
 
 fn main() -> ExitCode {
     let about = "Compares one body among many boxes with parry3d-f64; prints a table";
-    harness::run("among", about, |run, (): &()| {
+    harness::run("among", about, |run, own: &OwnArguments| {
+        if let Some(points) = own.points {
+            let columns = "points:>9; body:<6; radius:>8; cast us:>8.1=ns ÷ 1e3 us; boxes:>7; queried:>8; cube:>7;
+                nearest us:>11.1=nearest_ns ÷ 1e3 us; queried:>8=nearest_queried";
+            run.table("medians", columns);
+            return measure_drops(points, run);
+        }
         let columns = "boxes:>9; build ms:>8.2=build_ms; parry:>8.2=parry_build_ms;
             nearest:>8.0=nearest/0; parry:>8.0=nearest/1; ratio:>8.2=nearest/2;
             cast:>8.0=cast/0; parry:>8.0=cast/1; ratio:>8.2=cast/2;
@@ -43,6 +54,56 @@ fn main() -> ExitCode {
         run.sizes(&SIZES).into_iter().for_each(|n| run.add(measure_row(n, run)));
         Ok(())
     })
+}
+
+#[derive(Debug, Args)]
+struct OwnArguments {
+    /// Drop a point and balls on a scan of N points instead
+    #[arg(long, value_name = "N")]
+    points: Option<usize>,
+}
+
+/// Radii of balls that are dropped on a scan; 0 stands for a point.
+const RADII: [f64; 4] = [0.0, 0.01, 0.05, 0.25];
+
+/// Measures drops on a scan of a wavy square with sides of 2.
+fn measure_drops(count: usize, run: &mut Run) -> Result<(), Failure> {
+    let random = &mut run.random(&[count as u64, 0x5ca]);
+    let point = Arc::new(ConvexPolyhedron::from_points(&[DVec3::ZERO])?);
+    let on_scan = |[x, y, _]: [f64; 3]| {
+        let height = 0.1 * (5.0 * x).sin() * (4.0 * y).cos();
+        Pose::from_translation(DVec3::new(x, y, height))
+    };
+    let scan = (0..count).map(|_| on_scan(random.vector().to_array()));
+    let scan = scan.collect::<Result<Vec<Pose>, _>>()?;
+    let mut obstacles = Obstacles::new();
+    obstacles.insert_all(scan.into_iter().map(|pose| (point.clone(), pose)));
+    for radius in RADII {
+        let ball = ConvexPolyhedron::sphere(DVec3::ZERO, radius)?;
+        let [mut times, mut boxes, mut queried, mut cube] = <[Times; 4]>::default();
+        let [mut nearest_times, mut nearest_queried] = <[Times; 2]>::default();
+        for _ in 0..run.choose(100, 1_000) {
+            let at = random.vector() * 0.9;
+            let start = Pose::from_translation(DVec3::new(at.x, at.y, 1.0))?;
+            let direction = DVec3::new(0.25 * at.z, 0.125, -1.0);
+            let query = SceneQuery::new(ball.at(start), &obstacles)?;
+            let (found, spent) = Clock::new(1).time(|| query.clearance(direction));
+            let steps = found?.steps;
+            times.add(spent);
+            boxes.add(f64::from(steps.boxes));
+            queried.add(f64::from(steps.bodies));
+            cube.add(query.certified_clearance(direction)?.1.passed.len() as f64);
+            let (nearest, spent) = Clock::new(1).time(|| query.nearest());
+            nearest_times.add(spent);
+            nearest_queried.add(nearest?.map_or(0.0, |nearest| f64::from(nearest.steps.bodies)));
+        }
+        run.add(json!({
+            "points": count, "body": if radius == 0.0 { "point" } else { "ball" }, "radius": radius,
+            "ns": times.median(), "boxes": boxes.median(), "queried": queried.median(), "cube": cube.median(),
+            "nearest_ns": nearest_times.median(), "nearest_queried": nearest_queried.median(),
+        }));
+    }
+    Ok(())
 }
 
 /// A scene, for both libraries.

@@ -93,6 +93,21 @@ fn spheres_meet_where_the_closed_form_says() {
     assert!(contacts > cases(100), "{contacts}");
 }
 
+/// The Minkowski difference of parallel axes is a segment.
+#[test]
+fn parallel_capsules_are_as_far_apart_as_their_axes() {
+    let bar = capsule(DVec3::X, 0.25);
+    for x in [-4.0_f64, -2.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0] {
+        for z in [0.0, 1.0, 3.0] {
+            let pair = Pair::new(bar.at(at(x, 0.0, z)), bar.at(Pose::IDENTITY)).expect("a pair");
+            let distance = pair.distance().expect("an answer");
+            RoundedJudge::new(pair).check(&distance).expect("a right distance");
+            let gap = ((x.abs() - 2.0).max(0.0).hypot(z) - 0.5).max(0.0);
+            assert!((distance.upper - gap).abs() < 1e-13, "{x} {z} {distance:?}");
+        }
+    }
+}
+
 #[test]
 fn a_capsule_meets_edges_faces_and_corners_of_a_box() {
     let table = cuboid(DVec3::splat(-1.0), DVec3::splat(1.0));

@@ -7,6 +7,7 @@ use super::gjk::{Goal, unit_vector};
 use super::simplex::{Corner, Simplex};
 use super::{DescentResult, Difference};
 use crate::setting::VertexPair;
+use colltrans_kernel::noise::UNIT_VECTOR;
 use colltrans_kernel::real::RealVector;
 
 impl Difference<'_> {
@@ -27,7 +28,7 @@ impl Difference<'_> {
 }
 
 /// Computes nearest points and a plane between two cores that are points or segments. `None` if rounding keeps the
-/// bounds from reaching `goal`.
+/// bounds from reaching `goal`, as for parallel segments of which `M` is a segment.
 #[inline(never)]
 pub(super) fn nearest_of_segments(difference: &Difference, goal: &Goal) -> Option<DescentResult> {
     let [ends_of_moving, ends_of_fixed] =
@@ -69,6 +70,11 @@ fn record_simplex<const N: usize>(
     nearest: &RealVector<f64>,
     found: &mut DescentResult,
 ) {
+    // The weights of a triangle without area are not numbers, and none remains.
+    let (_, weights) = simplex.pairs_and_weights();
+    if (weights.iter().sum::<f64>() - 1.0).abs() > UNIT_VECTOR {
+        return;
+    }
     let point = nearest.to_dvec3();
     let distance = point.length();
     if distance >= found.upper {

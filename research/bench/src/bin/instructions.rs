@@ -186,7 +186,9 @@ impl Contestant {
             tracker.first_contact(&casts[0]).map_err(|error| error.to_string())?;
         }
         counted_casts(&casts[1..], tracker.as_mut(), &mut outcomes);
-        outcomes.iter().for_each(|outcome| counts.add(outcome));
+        for outcome in &outcomes {
+            counts.add(outcome);
+        }
         Ok(())
     }
 }

@@ -104,6 +104,14 @@ impl SectionEdge {
         Self { low, high, direction: low.edge_direction_to(&high) }
     }
 
+    /// Checks whether the perpendicular foot of a point is on the edge, up to `tolerance`.
+    pub(super) fn is_beside(&self, point: DVec2, tolerance: f64) -> bool {
+        let edge = self.high.w - self.low.w;
+        let along = (point - self.low.w).dot(edge);
+        let slack = tolerance * edge.abs().element_sum();
+        -slack <= along && along <= edge.length_squared() + slack
+    }
+
     /// Returns the end whose mesh edge spans more levels. The drift of a mesh edge that only rounding lifts
     /// across the level has no significant digits.
     pub(super) fn longer_end(&self) -> &Crossing {

@@ -416,9 +416,10 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
     /// [`Self::enter_next_cell`].
     fn enter_cell_on_faces(&mut self, levels: [f64; 2], faces: [u32; 2]) -> Option<ExitResult> {
         let SectionPair { sides, frame, extent, .. } = self.sections;
-        let answer = planar::solve_on_faces(sides, levels, faces)?;
+        let tolerance = HEIGHT_TOLERANCE * extent;
+        let answer = planar::solve_on_faces(sides, levels, faces, tolerance)?;
         let local = answer.linear_piece(frame, levels);
-        let is_there = (local.bound.value - self.upper).abs() <= HEIGHT_TOLERANCE * extent;
+        let is_there = (local.bound.value - self.upper).abs() <= tolerance;
         if !is_there {
             return None;
         }

@@ -635,7 +635,7 @@ fn faces_of_edge_contact_reproduce_it() {
         let PlanarAnswer::Edges { edges, contact } = found else { continue };
         contacts += 1;
         let faces = [0, 1].map(|i| face_of_edge(&query.sides[i], &edges[i]).unwrap().0);
-        let again = planar::solve_on_faces(&query.sides, levels, faces);
+        let again = planar::solve_on_faces(&query.sides, levels, faces, 1e-9);
         let Some(PlanarAnswer::Edges { contact: other, .. }) = again else { continue };
         reproduced += 1;
         assert!(contact.distance(other) < 1e-9, "round {round}: {contact} {other}");

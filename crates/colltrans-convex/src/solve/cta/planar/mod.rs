@@ -88,13 +88,13 @@ pub(super) fn solve_planar(
     problem.solve_from_guess(&guess, height)
 }
 
-/// Returns the edge contact in which the section edges on two faces, given by half-edges, cross. Does not check
-/// that their lines cross within the edges. `None` if a face has no such edge, or if the edges do not approach
-/// each other.
+/// Returns the edge contact in which the section edges on two faces, given by half-edges, cross. `None` if a face has no
+/// such edge, if the edges do not approach each other, or if their lines cross farther than `tolerance` from an edge.
 pub(super) fn solve_on_faces(
     sides: &[SectionedBody; 2],
     levels: [f64; 2],
     faces: [u32; 2],
+    tolerance: f64,
 ) -> Option<PlanarAnswer> {
     let section = |body: usize| Section { side: &sides[body], level: levels[body], max_steps: 0 };
     let sections = [section(0), section(1)];
@@ -102,7 +102,12 @@ pub(super) fn solve_on_faces(
     let (of_q, q) = sections[1].edge_on_face(faces[1])?;
     let chains = FacingChains::new(&sections, usize::from(of_q == Chain::Left));
     let edges = [p, q];
-    (of_p != of_q && chains.gap_closes(&edges)).then(|| edge_contact(&edges))
+    if of_p == of_q || !chains.gap_closes(&edges) {
+        return None;
+    }
+    let answer = edge_contact(&edges);
+    let PlanarAnswer::Edges { contact, .. } = answer else { return None };
+    edges.iter().all(|edge| edge.is_beside(contact, tolerance)).then_some(answer)
 }
 
 /// Two sections, and the maximum number of steps along them.

@@ -12,6 +12,7 @@
 //!
 //! Derivations: `docs/theory/offsets.md`.
 
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use glam::DVec3;
@@ -218,33 +219,20 @@ impl OffsetField {
     fn new(solid: &Solid) -> Self {
         let vertex_facets = VertexFacets::new(solid);
         let mut field = vec![DVec3::ZERO; solid.vertices.len()];
-        let threads = thread::available_parallelism().map_or(1, usize::from);
-        let chunk = field.len().div_ceil(threads).max(4_096);
-        let fill = |first: usize, part: &mut [DVec3]| {
+        fill_in_chunks(&mut field, |first, part| {
             let mut normals = Vec::new();
             for (k, x) in part.iter_mut().enumerate() {
                 vertex_facets.normals_around(first + k, &mut normals);
                 *x = shortest_displacement(&normals).unwrap_or(DVec3::ZERO);
             }
-        };
-        if field.len() <= chunk {
-            // This path also serves platforms without threads, such as browsers.
-            fill(0, &mut field);
-        } else {
-            thread::scope(|scope| {
-                for (n, part) in field.chunks_mut(chunk).enumerate() {
-                    let fill = &fill;
-                    scope.spawn(move || fill(n * chunk, part));
-                }
-            });
-        }
+        });
         let stuck = (0..field.len() as u32)
             .filter(|&v| {
                 field[v as usize] == DVec3::ZERO && vertex_facets.has_moving_facets(v as usize)
             })
             .collect();
         let most = MAX_RATE_AMOUNT * solid.reach;
-        let nodes = (0..solid.nodes.len()).map(|k| node_motion(solid, &field, most, k)).collect();
+        let nodes = node_motions(solid, &field, most);
         let farthest = field.iter().map(|x| x.length()).fold(0.0, f64::max);
         Self {
             displacements: field,
@@ -273,11 +261,56 @@ impl OffsetField {
     }
 }
 
+/// Minimum number of elements for which threads are started, and number of elements that a thread takes at once.
+const CHUNK: usize = 4_096;
+
+/// Fills a slice in chunks, on all processors if there are several chunks. `fill` gets the position of the first element
+/// of a chunk, and the chunk.
+fn fill_in_chunks<T: Send>(all: &mut [T], fill: impl Fn(usize, &mut [T]) + Sync) {
+    let threads = thread::available_parallelism().map_or(1, usize::from).min(all.len() / CHUNK);
+    if threads <= 1 {
+        // This path also serves platforms without threads, such as browsers.
+        fill(0, all);
+        return;
+    }
+    let queue = Mutex::new(all.chunks_mut(CHUNK).enumerate());
+    let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+    thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some((n, part)) = next() {
+                    fill(n * CHUNK, part);
+                }
+            });
+        }
+    });
+}
+
 /// The facets with an offset, by vertex.
 struct VertexFacets<'a> {
     solid: &'a Solid,
     starts: Vec<u32>,
     facets: Vec<u32>,
+    /// Of each facet.
+    normals: Vec<FacetNormal>,
+}
+
+/// Normal of a facet.
+#[derive(Clone, Copy)]
+struct FacetNormal {
+    unit: DVec3,
+    /// Length of the area vector, and of the longest side.
+    area: f64,
+    longest: f64,
+}
+
+impl FacetNormal {
+    fn new([a, b, c]: [DVec3; 3]) -> Self {
+        let vector = tree::area_vector([a, b, c]).0;
+        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+        let area = vector.length();
+        Self { unit: vector / area, area, longest }
+    }
 }
 
 impl<'a> VertexFacets<'a> {
@@ -298,7 +331,15 @@ impl<'a> VertexFacets<'a> {
                 next[v as usize] += 1;
             }
         }
-        Self { solid, starts, facets }
+        let none = FacetNormal { unit: DVec3::ZERO, area: 0.0, longest: 0.0 };
+        let mut normals = vec![none; solid.triangles.len()];
+        fill_in_chunks(&mut normals, |first, part| {
+            for (k, normal) in part.iter_mut().enumerate() {
+                let corners = solid.triangles[first + k];
+                *normal = FacetNormal::new(corners.map(|v| solid.vertices[v as usize]));
+            }
+        });
+        Self { solid, starts, facets, normals }
     }
 
     /// Checks whether a vertex has facets with an offset.
@@ -313,16 +354,9 @@ impl<'a> VertexFacets<'a> {
         for least in [MIN_HEIGHT * self.solid.reach, 0.0] {
             normals.clear();
             for &t in facets {
-                let corners = self.solid.triangles[t as usize].map(|v| v as usize);
-                let [a, b, c] = corners.map(|v| self.solid.vertices[v]);
-                let area = tree::area_vector([a, b, c]).0;
-                let longest = (b - a).length().max((c - b).length()).max((a - c).length());
-                let length = area.length();
-                if length > least * longest {
-                    let normal = area / length;
-                    if normals.last() != Some(&normal) {
-                        normals.push(normal);
-                    }
+                let FacetNormal { unit, area, longest } = self.normals[t as usize];
+                if area > least * longest && normals.last() != Some(&unit) {
+                    normals.push(unit);
                 }
             }
             if !normals.is_empty() {
@@ -335,45 +369,67 @@ impl<'a> VertexFacets<'a> {
 /// Returns the shortest `x` with `n.x <= -1` for all normals; `None` if there is none with a length of at most
 /// [`MAX_DISPLACEMENT`]. After [`MAX_ROUNDS`] rounds `x` satisfies the conditions, but it may not be the shortest.
 fn shortest_displacement(normals: &[DVec3]) -> Option<DVec3> {
-    let mut simplex = vec![*normals.first()?];
+    let mut simplex = Simplex { points: [*normals.first()?; 4], count: 1 };
     for _ in 0..MAX_ROUNDS {
-        let w = nearest_in_hull(&mut simplex);
+        let w = simplex.reduce_to_nearest();
         let size = w.length_squared();
         if size * MAX_DISPLACEMENT * MAX_DISPLACEMENT < 1.0 {
             return None;
         }
         let lowest = normals.iter().min_by(|a, b| a.dot(w).total_cmp(&b.dot(w)))?;
         let depth = lowest.dot(w);
-        if depth >= size * (1.0 - 1e-12) || simplex.contains(lowest) {
+        if depth >= size * (1.0 - 1e-12) || simplex.points().contains(lowest) {
             // Scaled by the lowest normal, so that rounding leaves no product above -1.
             return (depth * MAX_DISPLACEMENT > w.length()).then(|| w / -depth);
         }
-        simplex.push(*lowest);
+        if simplex.count == simplex.points.len() {
+            // Four points span the nearest point only if this is the origin, to within rounding.
+            return None;
+        }
+        simplex.points[simplex.count] = *lowest;
+        simplex.count += 1;
     }
-    let w = nearest_in_hull(&mut simplex);
+    let w = simplex.reduce_to_nearest();
     let depth = normals.iter().map(|n| n.dot(w)).fold(f64::INFINITY, f64::min);
     (depth > 0.0 && depth * MAX_DISPLACEMENT > w.length()).then(|| w / -depth)
 }
 
-/// Returns the point of the convex hull of up to four points that is nearest to the origin, and reduces the points to
-/// those that span it.
-fn nearest_in_hull(points: &mut Vec<DVec3>) -> DVec3 {
-    let mut best: Option<(f64, DVec3, u32)> = None;
-    for mask in 1..1_u32 << points.len() {
-        let chosen: Vec<DVec3> =
-            (0..points.len()).filter(|k| mask >> k & 1 == 1).map(|k| points[k]).collect();
-        let Some(w) = nearest_in_affine_hull(&chosen) else { continue };
-        if best.is_none_or(|b| w.length_squared() < b.0) {
-            best = Some((w.length_squared(), w, mask));
-        }
+/// Up to four points.
+struct Simplex {
+    points: [DVec3; 4],
+    count: usize,
+}
+
+impl Simplex {
+    fn points(&self) -> &[DVec3] {
+        &self.points[..self.count]
     }
-    let Some((_, w, mask)) = best else { return points[0] };
-    let mut k = 0;
-    points.retain(|_| {
-        k += 1;
-        mask >> (k - 1) & 1 == 1
-    });
-    w
+
+    /// Returns the points of a set of positions, in order.
+    fn part(&self, mask: u32) -> Self {
+        let mut part = Self { points: self.points, count: 0 };
+        for (k, point) in self.points().iter().enumerate() {
+            if mask >> k & 1 == 1 {
+                part.points[part.count] = *point;
+                part.count += 1;
+            }
+        }
+        part
+    }
+
+    /// Returns the point of the convex hull that is nearest to the origin, and keeps the points that span it.
+    fn reduce_to_nearest(&mut self) -> DVec3 {
+        let mut best: Option<(f64, DVec3, u32)> = None;
+        for mask in 1..1_u32 << self.count {
+            let Some(w) = nearest_in_affine_hull(self.part(mask).points()) else { continue };
+            if best.is_none_or(|b| w.length_squared() < b.0) {
+                best = Some((w.length_squared(), w, mask));
+            }
+        }
+        let Some((_, w, mask)) = best else { return self.points[0] };
+        *self = self.part(mask);
+        w
+    }
 }
 
 /// Returns the point of the affine hull that is nearest to the origin; `None` if it is outside the convex hull.
@@ -404,25 +460,74 @@ fn nearest_in_affine_hull(points: &[DVec3]) -> Option<DVec3> {
     }
 }
 
-/// Computes the bounds on the changes of a node.
-fn node_motion(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotion {
-    let node: &Node = &solid.nodes[at];
-    let mut bounds = Aabb::EMPTY;
+/// Bounds of the moved facets of a node.
+#[derive(Clone, Copy)]
+struct MovedFacets {
+    bounds: Aabb,
+    /// Largest rate of a normal, and sine that rounding adds.
+    turn: [f64; 2],
+}
+
+impl MovedFacets {
+    fn union(&self, other: &Self) -> Self {
+        let turn = [0, 1].map(|k| self.turn[k].max(other.turn[k]));
+        Self { bounds: self.bounds.union(&other.bounds), turn }
+    }
+}
+
+/// Computes the bounds on the changes of all nodes, for amounts up to `most`.
+fn node_motions(solid: &Solid, field: &[DVec3], most: f64) -> Vec<NodeMotion> {
+    let moved: Vec<DVec3> =
+        solid.vertices.iter().zip(field).map(|(v, x)| offset_vertex(*v, *x, most)).collect();
+    let none = MovedFacets { bounds: Aabb::EMPTY, turn: [0.0; 2] };
+    let mut facets = vec![none; solid.nodes.len()];
+    // Children are after their parents.
+    for (at, node) in solid.nodes.iter().enumerate().rev() {
+        facets[at] = if node.is_leaf() {
+            node.facets().fold(none, |all, t| {
+                let corners = solid.triangles[t].map(|v| moved[v as usize]);
+                let turn = normal_turn_rate(solid, field, t);
+                all.union(&MovedFacets { bounds: Aabb::from_points(corners), turn })
+            })
+        } else {
+            let [first, second] = node.child_positions(at as u32);
+            facets[first as usize].union(&facets[second as usize])
+        };
+    }
+    let still = NodeMotion {
+        low: [0.0; 3],
+        high: [0.0; 3],
+        slab: [0.0; 2],
+        normal_turn_rate: 0.0,
+        rounding_turn: 0.0,
+    };
+    let mut motions = vec![still; solid.nodes.len()];
+    fill_in_chunks(&mut motions, |first, part| {
+        for (k, motion) in part.iter_mut().enumerate() {
+            *motion = node_motion(solid, &moved, most, &solid.nodes[first + k], &facets[first + k]);
+        }
+    });
+    motions
+}
+
+/// Computes the bounds on the changes of a node from those of its facets, with all vertices `moved` by `most`.
+fn node_motion(
+    solid: &Solid,
+    moved: &[DVec3],
+    most: f64,
+    node: &Node,
+    MovedFacets { bounds, turn }: &MovedFacets,
+) -> NodeMotion {
     let mut slab = [f64::INFINITY, f64::NEG_INFINITY];
-    let [mut turn, mut rough] = [0.0_f64; 2];
-    for t in node.facets() {
-        for v in solid.triangles[t].map(|v| v as usize) {
-            let moved = offset_vertex(solid.vertices[v], field[v], most);
-            bounds.extend_to(moved);
-            let level = node.axis.dot(moved);
+    // A node with all orientations has no slab, and no cone of normals that could turn.
+    let has_slab = node.slab[1] < f64::INFINITY;
+    if has_slab {
+        for v in solid.triangles[node.facets()].as_flattened() {
+            let level = node.axis.dot(moved[*v as usize]);
             slab = [slab[0].min(level), slab[1].max(level)];
         }
-        // A node with all orientations has no cone of normals that could turn.
-        if node.slab[1] < f64::INFINITY {
-            let [x, y] = normal_turn_rate(solid, field, t);
-            (turn, rough) = (turn.max(x), rough.max(y));
-        }
     }
+    let [turn, rough] = if has_slab { *turn } else { [0.0; 2] };
     // Rounds outwards, by more than the rounding errors of the ends of the chords.
     let slack = 16.0 * f64::EPSILON * solid.reach / most;
     let down = |end: f64, start: f64| ((end - start) / most - slack) as f32;

@@ -12,6 +12,8 @@
 //! facets, that of its first facet.
 
 use std::cell::{OnceCell, RefCell};
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 use glam::DVec3;
 
@@ -35,12 +37,28 @@ pub(crate) struct SolidTree<'a> {
     vertices: OnceCell<Vec<DVec3>>,
 }
 
-/// The nodes that have been computed.
-#[derive(Debug, Clone)]
-struct KnownNodes {
-    /// Index of each node in `nodes`, plus one; 0 if it has not been computed.
-    places: Vec<u32>,
-    nodes: Vec<(Aabb, BoxNode)>,
+/// The nodes that have been computed, by their indices.
+type KnownNodes = HashMap<u32, (Aabb, BoxNode), BuildHasherDefault<IndexHasher>>;
+
+/// Hashes one index by a product whose upper bits depend on all bits of the index.
+#[derive(Debug, Clone, Copy, Default)]
+struct IndexHasher(u64);
+
+impl Hasher for IndexHasher {
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.write_u32(u32::from(*byte));
+        }
+    }
+
+    fn write_u32(&mut self, index: u32) {
+        let product = (self.0 ^ u64::from(index)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.0 = product ^ (product >> 32);
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
 }
 
 /// A box around some facets, in the frame of the body.
@@ -115,20 +133,12 @@ impl<'a> SolidTree<'a> {
         let is_shrunk = amount != 0.0 && solid.has_offset();
         let displacements = is_shrunk.then(|| &solid.offset_field().displacements[..]);
         let reach = solid.offset_reach(amount).next_up();
-        // Zeroed memory is provided on first access, so that a large tree costs as much as the visited part of it.
-        let places = vec![0; solid.nodes().len() + 2 * solid.triangles().len()];
-        let known = RefCell::new(KnownNodes { places, nodes: Vec::new() });
+        let known = RefCell::default();
         Self { solid, amount, displacements, reach, known, vertices: OnceCell::new() }
     }
 
     /// Returns a node by its index. The root has index 0.
     pub(super) fn node(&self, at: u32) -> BoxNode {
-        let known = self.known.borrow();
-        let place = known.places[at as usize];
-        if place > 0 {
-            return known.nodes[place as usize - 1].1;
-        }
-        drop(known);
         self.box_and_node(at).1
     }
 
@@ -164,9 +174,8 @@ impl<'a> SolidTree<'a> {
 
     /// Returns the exact box of a node, and the node.
     fn box_and_node(&self, at: u32) -> (Aabb, BoxNode) {
-        let place = self.known.borrow().places[at as usize];
-        if place > 0 {
-            return self.known.borrow().nodes[place as usize - 1];
+        if let Some(known) = self.known.borrow().get(&at) {
+            return *known;
         }
         let content = self.content(at);
         let is_stored = (at as usize) < self.solid.nodes().len();
@@ -182,10 +191,9 @@ impl<'a> SolidTree<'a> {
         let middle = low + (high - low) * 0.5;
         let half = (high - middle).max(middle - low);
         let half = half + (half + middle.abs()) * EXTENT_ERROR;
-        let known = &mut *self.known.borrow_mut();
-        known.nodes.push((bounds, BoxNode { middle, half, content }));
-        known.places[at as usize] = known.nodes.len() as u32;
-        known.nodes[known.nodes.len() - 1]
+        let computed = (bounds, BoxNode { middle, half, content });
+        self.known.borrow_mut().insert(at, computed);
+        computed
     }
 
     /// Returns the children of a node, or its facet.
@@ -324,7 +332,7 @@ mod tests {
             let mut steps = MotionSteps::default();
             let (found, _) = search_span(&spans[0], SearchMode::FirstContact, &mut steps);
             assert!(found.is_some());
-            let known: usize = trees.map(|tree| tree.known.into_inner().nodes.len()).iter().sum();
+            let known: usize = trees.map(|tree| tree.known.into_inner().len()).iter().sum();
             // Both trees have four nodes for each facet of one body. Where vertices tie, boxes need their children.
             let all = 4 * solid.triangles().len();
             assert!(known < all / 8, "{tolerance}: {known} of {all} nodes, {} visits", steps.nodes);

@@ -1,7 +1,7 @@
 //! The distance of two solids, and its proof.
 //!
-//! - Surfaces: a best-first search compares pairs of facets. Its cover proves that no pair of facets is nearer. If no
-//!   proof is requested, the hulls of convex bodies give the facets and a separating plane without a search.
+//! - Surfaces: the hulls of convex bodies give the nearest facets and a separating plane. Otherwise a best-first search
+//!   compares pairs of facets. The plane, or the cover of the search, proves that no pair of facets is nearer.
 //! - Bodies: they meet if facets have a common point or if a shell lies inside the other body. Both are decided
 //!   exactly. Common points are searched only if the distance of the surfaces may be 0, enclosed shells only if the
 //!   surfaces are apart.
@@ -15,7 +15,8 @@ use glam::DVec3;
 
 use crate::body::{AsSolid, Solid};
 use crate::cast::tolerance::least_tolerance_from;
-use crate::cast::{Claim, Cover, nearest_facets};
+use crate::cast::{Claim, Cover};
+use crate::solve::hulls::nearest_facets;
 use crate::solve::nearest::search::{DistanceSearch, SearchEnd, proven_bound};
 #[cfg(feature = "serde")]
 use crate::solve::nearest::weighted_points;
@@ -104,6 +105,8 @@ struct NearestFacets {
     are_separated: bool,
     /// Cover of all pairs of nodes, if a proof was requested and the lower bound is positive.
     cover: Option<Cover<Apart>>,
+    /// Lower bound of the distance of the cores that the cover proves, if it is known.
+    proven: Option<f64>,
     steps: SolidSteps,
 }
 
@@ -111,6 +114,8 @@ struct NearestFacets {
 pub struct ProofInput {
     near: SolidNear,
     cover: Option<Cover<Apart>>,
+    /// Lower bound of the distance of the cores that the cover proves, if it is known.
+    proven: Option<f64>,
 }
 
 /// Queries of a [`Pair`] of two [`Solid`]s that pairs of other bodies do not have.
@@ -236,14 +241,17 @@ impl SolidPairSearch for Pair<'_, Solid> {
         let nearest = search_nearest(self, &scene, SearchEnd::LEAST, prove);
         let distance = distance_answer(self, &scene, &nearest);
         let cover = nearest.cover.filter(|_| distance.lower > 0.0);
-        Ok((distance, ProofInput { near: distance.near, cover }))
+        Ok((distance, ProofInput { near: distance.near, cover, proven: nearest.proven }))
     }
 
     #[inline]
     fn prove_lower_bound(&self, found: ProofInput) -> Result<DistanceCertificate, QueryError> {
-        let ProofInput { near, cover } = found;
+        let ProofInput { near, cover, proven } = found;
         let Some(cover) = cover else { return Ok(DistanceCertificate::from_near(near)) };
-        let proven = least_proven_distance(&pair_scene(self)?, &cover);
+        let proven = match proven {
+            Some(proven) => Ok(proven),
+            None => least_proven_distance(&pair_scene(self)?, &near, &cover),
+        };
         Ok(match proven.map(|cores| self.bodies.less_radii(cores)) {
             Ok(lower) if lower > 0.0 => DistanceCertificate { lower, near, cover },
             _ => DistanceCertificate::from_near(near),
@@ -264,7 +272,7 @@ impl SolidPairSearch for Pair<'_, Solid> {
             beyond: high + 0.125 * scene.noise,
             enough: low - triangle::LENGTH_NOISES * scene.noise,
         };
-        let NearestFacets { spot, lower, cover, mut steps, .. } =
+        let NearestFacets { spot, lower, cover, proven, mut steps, .. } =
             search_nearest(self, &scene, until, prove && until.beyond.is_finite());
         let near_of = |spot: NearestPoints| near_less_radii(&self.bodies, spot.solid_near(&scene));
         let near = spot.map(near_of);
@@ -272,19 +280,21 @@ impl SolidPairSearch for Pair<'_, Solid> {
         let meeting = || nested_shell(&scene).map(SolidNear::Meeting);
         let closer = near.map_or_else(meeting, |near| (near.distance() <= length).then_some(near));
         if let Some(near) = closer {
-            return Ok(((Within::Closer(near), steps), ProofInput { near, cover: None }));
+            let found = ProofInput { near, cover: None, proven: None };
+            return Ok(((Within::Closer(near), steps), found));
         }
         if lower > length {
             let near =
                 near.unwrap_or_else(|| near_of(NearestPoints::from_triangles(&scene, [0, 0])));
             let answer = Within::Farther(SolidGap { gap: lower });
-            return Ok(((answer, steps), ProofInput { near, cover }));
+            return Ok(((answer, steps), ProofInput { near, cover, proven }));
         }
         let (distance, found) = self.distance_with_proof_input(prove)?;
         steps += distance.steps;
         let answer = if distance.upper <= length {
             let near = distance.near;
-            return Ok(((Within::Closer(near), steps), ProofInput { near, cover: None }));
+            let found = ProofInput { near, cover: None, proven: None };
+            return Ok(((Within::Closer(near), steps), found));
         } else if distance.lower > length {
             Within::Farther(SolidGap { gap: distance.lower })
         } else {
@@ -396,19 +406,19 @@ fn near_less_radii(bodies: &TwoBodies<'_, Solid>, near: SolidNear) -> SolidNear 
     }
 }
 
-/// Finds the nearest facets: those of convex bodies from the distance of their hulls unless `prove` is set, others by a
-/// search. Records the cover of the search if `prove` is set.
+/// Finds the nearest facets: those of convex bodies from the distance of their hulls, others by a search. If `prove` is
+/// set, the result has a cover: the plane between the facets of convex bodies, or the pairs of nodes of the search.
 fn search_nearest(
     pair: &Pair<'_, Solid>,
     scene: &PairFrame,
     until: SearchEnd,
     prove: bool,
 ) -> NearestFacets {
-    let hulls = if prove { None } else { nearest_facets(pair, scene) };
-    if let Some(found) = hulls {
+    if let Some(found) = nearest_facets(scene, prove) {
         let steps = SolidSteps { leaves: found.leaves, ..SolidSteps::default() };
-        let (spot, lower) = (Some(found.spot), found.lower);
-        return NearestFacets { spot, lower, are_separated: true, cover: None, steps };
+        let (spot, lower, proven) = (Some(found.spot), found.lower, found.proven);
+        let cover = prove.then(|| Cover(vec![Some(Apart::NearestPlane)]));
+        return NearestFacets { spot, lower, are_separated: true, cover, proven, steps };
     }
     let mut cuts = HashMap::new();
     let mut search = DistanceSearch::new(scene, until, |nodes, reason| {
@@ -420,7 +430,7 @@ fn search_nearest(
     // If the search ended early, some pairs have no reason, and the bound is 0.
     let cover = (prove && lower > 0.0).then(|| Cover::new([pair.moving(), pair.fixed()], &cuts));
     let spot = found.map(NearestPoints::from);
-    NearestFacets { spot, lower, are_separated: false, cover, steps }
+    NearestFacets { spot, lower, are_separated: false, cover, proven: None, steps }
 }
 
 /// Returns the distance of the bodies from the result for their surfaces.
@@ -461,12 +471,17 @@ fn distance_answer(
     }
 }
 
-/// Returns the smallest distance of the cores that the entries of a cover prove.
+/// Returns the smallest distance of the cores that the entries of a cover prove. `near` proves the upper bound of the
+/// distance, by facets that exist.
 ///
 /// # Errors
 /// Returns [`CertificateError::Cover`] if the cover does not fit the bodies, or for an entry that proves no positive
 /// distance or is marked as examined without being a pair of leaves.
-fn least_proven_distance(scene: &PairFrame, cover: &Cover<Apart>) -> Result<f64, CertificateError> {
+fn least_proven_distance(
+    scene: &PairFrame,
+    near: &SolidNear,
+    cover: &Cover<Apart>,
+) -> Result<f64, CertificateError> {
     let bodies = [scene.moving.solid, scene.fixed.solid];
     let axes = Axes::new(scene);
     let mut least = f64::INFINITY;
@@ -475,7 +490,7 @@ fn least_proven_distance(scene: &PairFrame, cover: &Cover<Apart>) -> Result<f64,
         if reason == Apart::Examined && !(leaf(0) && leaf(1)) {
             return false;
         }
-        least = least.min(proven_bound(scene, &axes, nodes, reason));
+        least = least.min(proven_bound((scene, &axes), near, nodes, reason));
         least > 0.0
     });
     walked.map_err(|entry| CertificateError::Cover { entry })?;
@@ -513,7 +528,7 @@ fn verify_cover(
     if *claimed == 0.0 && cover.is_empty() {
         return Ok(0.0);
     }
-    let proven = scene.setting.less_radii(least_proven_distance(scene, cover)?);
+    let proven = scene.setting.less_radii(least_proven_distance(scene, near, cover)?);
     let met = matches!(near, SolidNear::Meeting(_));
     if !(0.0..=proven).contains(claimed) || met {
         return Err(CertificateError::Bound { proven, claimed: *claimed });
@@ -542,7 +557,7 @@ mod tests {
             let ((answer, _), mut found) =
                 pair.within_with_proof_input(length, true).expect("an answer");
             assert_eq!(matches!(answer, Within::Farther(_)), is_farther);
-            found.cover = Some(Cover::new([&cube, &cube], &HashMap::new()));
+            (found.cover, found.proven) = (Some(Cover::new([&cube, &cube], &HashMap::new())), None);
             let (answer, proof) = prove_within(&pair, length, answer, found).expect("an answer");
             let proof = proof.expect("a proof");
             pair.verify(&proof).expect("it holds");

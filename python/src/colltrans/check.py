@@ -1399,7 +1399,7 @@ def solid_gap(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
 
     The cover of the claim is not used: a search of pairs of facets decides.
     """
-    check_letters(claim["cover"], "mfpqwxs")
+    check_letters(claim["cover"], "mfpqwnxs")
     lower = number(claim["lower"])
     if lower < 0:
         raise RefusedError("a distance is not negative")
@@ -1621,7 +1621,7 @@ class Scene:
             else:
                 # The file has no facets of a convex body.
                 check_solid_near(fields(claim, "lower near cover")["near"])
-                check_letters(claim["cover"], "mfpqwxs")
+                check_letters(claim["cover"], "mfpqwnxs")
                 report.partly = True
                 report.unchecked.append(f"that it is at least {claim['lower']!r} away")
             return number(claim["lower"])

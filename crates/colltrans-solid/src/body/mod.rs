@@ -492,7 +492,7 @@ impl Solid {
     }
 
     /// Returns the offset field, or `None` if this amount changes nothing.
-    fn shrinking_by(&self, amount: f64) -> Option<&OffsetField> {
+    pub(crate) fn shrinking_by(&self, amount: f64) -> Option<&OffsetField> {
         (amount != 0.0 && self.has_offset()).then(|| self.offset_field())
     }
 
@@ -504,7 +504,9 @@ impl Solid {
     }
 
     /// Returns an upper bound on the displacement of a vertex under an offset by this amount.
-    pub(crate) fn max_offset_displacement(&self, amount: f64) -> f64 {
+    #[doc(hidden)]
+    #[inline]
+    pub fn max_offset_displacement(&self, amount: f64) -> f64 {
         self.shrinking_by(amount).map_or(0.0, |shrinking| shrinking.max_displacement * amount.abs())
     }
 

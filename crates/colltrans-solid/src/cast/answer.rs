@@ -18,7 +18,8 @@ use super::hulls::{ContactGuess, Hulls};
 use super::proof::leaf_gap_bound;
 use super::tolerance::least_tolerance_from;
 use super::{
-    Cover, SolidCast, SolidCertificate, SolidFree, SolidOverlap, SolidScene, StartOverlap,
+    Cover, SolidCast, SolidCertificate, SolidFree, SolidOptions, SolidOverlap, SolidScene,
+    StartOverlap,
 };
 use super::{StartProof, StopProof, check_thickness, core_gap, default_tolerance, verify};
 use crate::body::{AsSolid, Solid};
@@ -177,6 +178,9 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
     }
 
     fn first_contact_in(&self, workspace: &mut Workspace) -> Result<Outcome<Solid>, QueryError> {
+        if let Some(outcome) = hull_first_contact(self) {
+            return Ok(outcome);
+        }
         let (scene, mut steps) = (self.scene_with_tolerance(0.0), SolidSteps::default());
         let found = search_least_gap(&scene, Aim::Least, f64::INFINITY, workspace, &mut steps);
         Ok(match found {
@@ -192,7 +196,13 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
     }
 
     fn exit_in(&self, workspace: &mut Workspace) -> Option<Bounded> {
-        let scene = self.reversed().scene_with_tolerance(0.0);
+        let reversed = self.reversed();
+        match hull_first_contact(&reversed) {
+            Some(Outcome::Contact(last)) => return Some(last.exit().clamped_to_nonnegative()),
+            Some(_) => return None,
+            None => {}
+        }
+        let scene = reversed.scene_with_tolerance(0.0);
         let steps = &mut SolidSteps::default();
         let found = search_least_gap(&scene, Aim::Least, f64::INFINITY, workspace, steps)?;
         Some(found.bounded(&scene).negated().clamped_to_nonnegative())
@@ -313,6 +323,13 @@ fn get_or_build_scene<'a, 's>(
         Some(scene) => scene,
         None => scene.insert(cast.checked_query_scene()?),
     })
+}
+
+/// Returns the first contact of the nominal bodies from the contact of their hulls; `None` if this does not prove it.
+fn hull_first_contact(cast: &Cast<'_, Solid>) -> Option<Outcome<Solid>> {
+    let options = SolidOptions::default().with_tolerance(0.0).with_min_gap(cast.options.min_gap);
+    let nominal = Cast { options, ..*cast };
+    Hulls::of_cast(&nominal)?.first_contact(&nominal)
 }
 
 /// Finds an overlap among the facets around the contact of the hulls. `None` if these show none, if there are no

@@ -33,6 +33,7 @@ impl ReasonLetters for Apart {
         (Self::SlabOfMoving, 'p'),
         (Self::SlabOfFixed, 'q'),
         (Self::Way, 'w'),
+        (Self::NearestPlane, 'n'),
         (Self::Examined, 'x'),
     ];
 }

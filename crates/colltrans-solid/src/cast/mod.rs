@@ -21,7 +21,6 @@ mod verify;
 #[cfg(all(test, debug_assertions))]
 mod work;
 
-pub(crate) use hulls::nearest_facets;
 pub use proof::{Claim, Cover, SolidCertificate, StartProof, StopProof};
 pub use queries::{SolidCast, SolidScene};
 pub use verify::SolidProof;

@@ -9,8 +9,9 @@
 //!    doubled and bisected, and each step tests the bodies: first the last place, then a plane between convex
 //!    bodies, then all facets.
 
-use super::{SolidScene, check_thickness, hulls};
+use super::{SolidScene, check_thickness};
 use crate::body::Solid;
+use crate::solve::hulls::HullPair;
 use crate::solve::overlap::{self, Overlap};
 use crate::solve::parted;
 use crate::solve::scene::PairFrame;
@@ -70,7 +71,7 @@ pub(crate) fn least_tolerance_from(
         let Some(next) = overlap::find_overlap(&shrunk(least), steps) else { return Some(least) };
         (place, overlapping) = (next, least);
     }
-    let convex = !nominal.has_min_gap() && hulls::are_convex(cast);
+    let convex = !nominal.has_min_gap() && HullPair::of_convex(&cast.setting.bodies).is_some();
     let mut between = None;
     let mut is_free = |tolerance| {
         if vanishes(tolerance) {

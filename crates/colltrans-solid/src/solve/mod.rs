@@ -10,11 +10,13 @@
 //! - [`thin`], [`line`], [`fan`]: points and segments, lines that enter material, the facets around a vertex.
 //! - [`sign`]: exact signs where rounding cannot decide.
 //! - [`nearest`]: the distance, for which the direction plays no part.
+//! - [`hulls`]: two convex solids as two convex bodies, which the queries of `cast` and `pair` ask first.
 
 pub(crate) mod bound;
 pub mod contact;
 pub(crate) mod edge_on;
 mod fan;
+pub mod hulls;
 mod inside;
 pub(crate) mod leaf;
 mod line;

@@ -2,7 +2,7 @@
 //!
 //! The judge is the same body twice, as two shells in one place: it is no convex solid, so it is searched.
 
-use colltrans_convex::{Bounded, Cast, Clearance, ConvexPolyhedron, Pose};
+use colltrans_convex::{Bounded, Cast, Clearance, ConvexPolyhedron, Outcome, Pose};
 use colltrans_solid::{Solid, SolidCast, SolidFree, SolidOptions, StartOverlap};
 use colltrans_testkit::bodies::solid;
 use colltrans_testkit::cases;
@@ -129,6 +129,62 @@ fn convex_solids_are_answered_as_by_the_search() {
     println!("{told} of {count} told by hulls; {blocked} blocked, {free} free");
     assert!(blocked > count / 5 && free > count / 5 && blocked + free < count);
     assert!(told > count / 3, "{told} of {count} are told by hulls");
+}
+
+/// First and last contacts, also behind the start, and common points.
+#[test]
+fn contacts_of_convex_solids_are_those_of_the_search() {
+    let mut random = Random::new(77);
+    let all = bodies(&mut random);
+    let twice: Vec<Solid> =
+        all.iter().map(|b| Solid::from_pieces([b, b]).expect("two pieces")).collect();
+    let (mut contacts, mut apart, mut alone) = (0, 0, 0);
+    let count = cases(2_000);
+    for round in 0..count {
+        let [i, j] = [0, 1].map(|_| random.index(all.len()));
+        let mut turned = || if round % 3 == 0 { DQuat::IDENTITY } else { random.rotation() };
+        let rotations = [turned(), turned()];
+        let direction =
+            if round % 6 == 0 { DVec3::AXES[round as usize / 6 % 3] } else { random.direction() };
+        let from =
+            random.direction() * random.range(0.0, 2.5) - direction * random.range(-4.0, 4.0);
+        let ask = |bodies: &[Solid]| {
+            let [p, q] = [(rotations[0], from), (rotations[1], DVec3::ZERO)]
+                .map(|(q, at)| Pose::new(q, at).expect("a pose"));
+            let cast = Cast::new(bodies[i].at(p), bodies[j].at(q), direction).expect("a query");
+            let meets = cast.intersects().expect("an answer").meets;
+            (cast.first_contact().expect("an answer"), cast.exit(), meets)
+        };
+        let [(first, exit, meets), (searched, last, met)] = [ask(&all), ask(&twice)];
+        let what = format!("{round}: {i} and {j}, {from}");
+        assert_eq!(meets, met, "{what}");
+        let agree = |x: Bounded, y: Bounded| {
+            assert!(x.lower <= y.upper && y.lower <= x.upper, "{what}: {x:?}, but {y:?}");
+            assert!(x.lower <= x.value && x.value <= x.upper, "{what}: {x:?}");
+            assert!(x.upper - x.lower < 1e-10, "{what}: {x:?}");
+        };
+        match (exit, last) {
+            (Some(x), Some(y)) => agree(x, y),
+            (None, None) => {}
+            _ => panic!("{what}: {exit:?}, but {last:?}"),
+        }
+        match (&first, &searched) {
+            (Outcome::Contact(a), Outcome::Contact(b)) => {
+                contacts += 1;
+                alone += usize::from(a.steps.nodes == 0);
+                agree(a.translation, b.translation);
+                assert!(a.normal.dot(direction) > 0.0, "{what}");
+            }
+            (Outcome::Separated(a), Outcome::Separated(b)) => {
+                apart += 1;
+                assert_eq!(a.separation.is_some(), b.separation.is_some(), "{what}");
+            }
+            _ => panic!("{what}: {first:?}, but {searched:?}"),
+        }
+    }
+    println!("{contacts} contacts, {alone} by hulls, {apart} apart, of {count}");
+    assert!(contacts > count as usize / 3 && apart > count as usize / 10);
+    assert!(alone > contacts / 2, "{alone} of {contacts}");
 }
 
 /// Convex solids that are ahead of each other, or pass each other narrowly, are told by their hulls' cast alone, without a

@@ -3,6 +3,7 @@
 use colltrans_convex::{ConvexPolyhedron, Pair, Pose, QueryError, Within};
 use colltrans_solid::proof::{Apart, Cover, DistanceCertificate};
 use colltrans_solid::{Solid, SolidNear, SolidPair};
+use colltrans_testkit::bodies::hull;
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::nearest::{DistanceOutcome, MESHES, Setting};
@@ -182,6 +183,7 @@ fn changed_proofs_are_refused() {
         Some(Apart::SlabOfMoving),
         Some(Apart::SlabOfFixed),
         Some(Apart::Way),
+        Some(Apart::NearestPlane),
         Some(Apart::Examined),
     ];
     let mut refused = 0;
@@ -193,12 +195,50 @@ fn changed_proofs_are_refused() {
             refused += usize::from(pair.verify(&other).is_err());
         }
     }
-    assert!(refused > 4 * entries.len(), "{refused} of {}", 6 * entries.len());
+    assert!(refused > 4 * entries.len(), "{refused} of {}", 7 * entries.len());
     let short = Cover::from(entries[..entries.len() - 1].to_vec());
     assert!(pair.verify(&DistanceCertificate { cover: short, ..proof.clone() }).is_err());
     // The proof of another place.
     let elsewhere = Pair::new(a.at(place([2.5, 0.0, 0.0])), b.at(Pose::IDENTITY)).expect("a pair");
     assert!(elsewhere.verify(&proof).is_err());
+}
+
+/// Convex bodies have a proof of one plane over all vertices. Larger bounds, and planes of other facets, are refused.
+#[test]
+fn proof_of_convex_solids_is_one_plane() {
+    let mut random = Random::new(12);
+    let (mut planes, mut refused, mut others) = (0, 0, 0);
+    for k in 0..cases(400) {
+        let count = [8, 20, 90][k as usize % 3];
+        let [p, q] = [(); 2].map(|()| Solid::from_convex(&hull(count, &mut random)));
+        let [p, q] = [p.expect("a solid"), q.expect("a solid")];
+        let rotation = if k % 4 == 0 { DQuat::IDENTITY } else { random.rotation() };
+        let far = random.direction() * random.range(1.2, 4.0);
+        let pose = Pose::new(rotation, far).expect("a pose");
+        let pair = Pair::new(p.at(pose), q.at(Pose::IDENTITY)).expect("a pair");
+        let (found, proof) = pair.certified_distance().expect("a distance");
+        assert!(pair.verify(&proof).is_ok(), "{k}");
+        if proof.cover.entries() != [Some(Apart::NearestPlane)] {
+            continue;
+        }
+        planes += 1;
+        assert!(found.upper - found.lower < 1e-13, "{k}: {found:?}");
+        let searched = found.steps.nodes;
+        assert_eq!(searched, 0, "{k}");
+        let more = DistanceCertificate { lower: proof.lower + 1e-13, ..proof.clone() };
+        assert!(pair.verify(&more).is_err(), "{k}");
+        let SolidNear::Points { triangles: [f, g], .. } = proof.near else { panic!("{k}") };
+        let near = SolidNear::Points {
+            triangles: [(f + 1) % p.triangles().len() as u32, g],
+            weights: [[1.0, 0.0, 0.0]; 2],
+            distance: 1e3,
+        };
+        others += 1;
+        let other = DistanceCertificate { near, ..proof.clone() };
+        refused += usize::from(pair.verify(&other).is_err());
+    }
+    assert!(planes > cases(400) as usize / 2, "{planes}");
+    assert!(refused > others / 4, "{refused} of {others}");
 }
 
 /// Matrices that are off a rotation place bodies that are stretched: boxes, slabs and what lies along them.

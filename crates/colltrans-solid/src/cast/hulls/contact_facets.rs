@@ -2,26 +2,17 @@
 //!
 //! Used if the bodies are offset by more than rounding, or if the certificate of the hulls proves too little.
 
-use glam::DVec3;
-
-use super::{Hulls, Surface, SurfacePoint};
+use super::{Hulls, Surface};
 use crate::solve::bound::box_gaps;
+use crate::solve::hulls::{FacetGroup, NEAR_NOISES, SurfacePoint, plane_margin};
 use crate::solve::overlap::{Overlap, is_overlap};
 use crate::solve::projected::Projected;
-use crate::solve::scene::{PairFrame, PlacedBody};
+use crate::solve::scene::PairFrame;
 use crate::solve::search::{Aim, GapSearch, LeastGap, SLACK};
-use crate::solve::separate::{HEIGHTS, max_height_along};
 use colltrans_convex::answer::{Contact, Outcome};
-use colltrans_convex::setting::VertexPair;
 
-/// Maximum number of facets of one body that are compared.
-const MAX_FACETS: usize = 4;
-/// Distance of the contact point from a side, in noises, up to which the facet across counts too.
-pub(super) const NEAR_NOISES: f64 = 64.0;
 /// Depth of an overlap, as a share of the size, up to which the facets around the contact are tested.
 const MAX_SHALLOW_DEPTH: f64 = 1e-3;
-/// Maximum number of vertices that are compared for the farthest one.
-const MAX_TOP_VERTICES: usize = 32;
 
 /// Result of the facets around the contact.
 pub(in crate::cast) enum ContactGuess {
@@ -81,56 +72,10 @@ impl Hulls<'_> {
     }
 }
 
-impl Surface<'_> {
-    /// Computes the maximum height of the offset solid's vertices along a normal of the world, above the origin of
-    /// the body, up to rounding.
-    ///
-    /// Vertices lower than the hull vertex `from` by twice the displacement of the offset and by rounding cannot be
-    /// highest. The others are found from `from` over edges of the hull, as the plateau of a support point is. If
-    /// the hull lacks vertices, or more than [`MAX_TOP_VERTICES`] remain, the tree is searched.
-    fn max_height(&self, scene: &PairFrame, side: &PlacedBody, normal: DVec3, from: u32) -> f64 {
-        let Self { body, .. } = self;
-        let local = side.matrix.transpose() * normal;
-        let height = |v: u32| local.dot(body.hull.vertices()[v as usize]);
-        let end =
-            height(from) - 2.0 * side.max_displacement() - scene.noise - body.hull.plateau_depth();
-        let (mut top, mut count, mut next) = ([from; MAX_TOP_VERTICES], 1, 0);
-        let mut reach = f64::NEG_INFINITY;
-        while body.has_all_vertices && next < count {
-            reach = reach.max(local.dot(side.offset_vertex(body.solid_vertex(top[next]))));
-            for &v in body.hull.neighbours(top[next]) {
-                if height(v) < end || top[..count].contains(&v) {
-                    continue;
-                }
-                if count == MAX_TOP_VERTICES {
-                    return max_height_along(side, normal);
-                }
-                top[count] = v;
-                count += 1;
-            }
-            next += 1;
-        }
-        if body.has_all_vertices { reach } else { max_height_along(side, normal) }
-    }
-}
-
 /// Computes a lower bound of the distance of the offset bodies along the normal of a contact of their hulls. It is
 /// not positive if no plane with that normal certainly separates them.
 fn contact_margin(scene: &PairFrame, bodies: &[Surface; 2], contact: &Contact) -> f64 {
     plane_margin(scene, bodies, contact.certificate.normal, contact.certificate.pairs[0])
-}
-
-/// Computes a lower bound of the distance of the offset bodies along a normal. It is not positive if no plane with that
-/// normal certainly separates them. `pair` has a highest vertex of the moving hull and a lowest one of the fixed hull.
-pub(super) fn plane_margin(
-    scene: &PairFrame,
-    [p, q]: &[Surface; 2],
-    normal: DVec3,
-    pair: VertexPair,
-) -> f64 {
-    let moving = p.max_height(scene, &scene.moving, normal, pair.moving.0);
-    let fixed = q.max_height(scene, &scene.fixed, -normal, pair.fixed.0);
-    normal.dot(scene.fixed.offset[0]) - fixed - moving - HEIGHTS * scene.noise
 }
 
 /// Computes a lower bound, a length, of all gaps of facets along the direction, up to the rounding of one division. It
@@ -216,35 +161,4 @@ fn facets_around_contact(
         )
     };
     Some([facet_group(0)?, facet_group(1)?])
-}
-
-/// Facets of one body around a point.
-pub(super) struct FacetGroup {
-    facets: [u32; MAX_FACETS],
-    count: usize,
-}
-
-impl FacetGroup {
-    /// Collects the facet at a point, and the facets across its sides within the distance `near` of the point. The
-    /// search begins at the hull vertex `corner`. `None` if no facet is found.
-    pub(super) fn new(
-        surface: &Surface,
-        corner: u32,
-        point: &SurfacePoint,
-        near: f64,
-    ) -> Option<Self> {
-        let triangle = surface.facet_at(corner, point, near)?;
-        let mut group = Self { facets: [triangle; MAX_FACETS], count: 1 };
-        for (k, inside) in surface.distances_inside(triangle, point, near).into_iter().enumerate() {
-            if inside <= 0.0 {
-                group.facets[group.count] = surface.solid.neighbours()[triangle as usize][k];
-                group.count += 1;
-            }
-        }
-        Some(group)
-    }
-
-    pub(super) fn facets(&self) -> &[u32] {
-        &self.facets[..self.count]
-    }
 }

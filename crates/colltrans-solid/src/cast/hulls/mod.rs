@@ -1,40 +1,26 @@
-//! Casts and distances of convex solids by those of their convex hulls, before any search.
+//! Casts of convex solids by those of their convex hulls, before any search.
 //!
 //! - [`transferred`] uses the answer of the hulls' cast, if its certificate holds for the solids too.
 //! - [`contact_facets`] uses only the normal and the points of the hulls' contact. It proves a lower bound by a plane
 //!   with that normal, or by the bounding boxes. The gap of two facets around the points gives the upper bound.
-//! - [`nearest`] does the same for distances.
 //!
 //! One of these decides nearly all casts of convex solids; the others are searched. The second method is valid for
 //! any rounding of the hulls and for solids that are not exactly convex. Derivations:
 //! `docs/theory/hulls-of-solids.md`.
 
 mod contact_facets;
-mod nearest;
-mod surface;
 mod transferred;
 
 use std::cell::OnceCell;
 
-use glam::DVec3;
-
 use super::core_gap;
 use crate::body::Solid;
+use crate::solve::hulls::{HullPair, Surface};
 use colltrans_convex::answer::{Contact, Outcome};
-use colltrans_convex::body::ConvexPolyhedron;
-use colltrans_convex::body::DerivedData;
 use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::Setting;
 use colltrans_convex::solve::options::Options;
 pub(super) use contact_facets::ContactGuess;
-pub(crate) use nearest::nearest_facets;
-use surface::{Surface, SurfacePoint};
-
-/// Maximum height of a vertex above the plane of an adjacent facet in a body that counts as convex, as a share of
-/// its reach.
-const CONVEXITY_TOLERANCE: f64 = 1e-9;
-/// Rounding error of a height above a plane of a body, as a share of its reach.
-const HEIGHT_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Convex hulls of the two solids of a query, and their cast.
 pub(super) struct Hulls<'a> {
@@ -54,13 +40,12 @@ impl<'a> Hulls<'a> {
         if core_gap(cast) > 0.0 || options.overlapping == Some(true) {
             return None;
         }
-        let bodies = [Surface::of_convex(cast.moving())?, Surface::of_convex(cast.fixed())?];
+        let HullPair { surfaces, hulls } = HullPair::of_convex(&cast.setting.bodies)?;
         let Setting { direction, length, unit, .. } = cast.setting;
-        let hull_bodies = cast.setting.bodies.with_bodies(bodies.map(|surface| &surface.body.hull));
-        let setting = Setting { bodies: hull_bodies, direction, length, unit };
+        let setting = Setting { bodies: hulls, direction, length, unit };
         let cast = Cast { setting, options: Options::default() };
         Some(Self {
-            bodies,
+            bodies: surfaces,
             cast,
             first_outcome: cast.first_contact().ok()?,
             last_contact: OnceCell::new(),
@@ -76,109 +61,4 @@ impl<'a> Hulls<'a> {
         };
         self.last_contact.get_or_init(last).as_ref()
     }
-}
-
-/// Checks whether both solids of a query count as convex.
-pub(super) fn are_convex(cast: &Cast<'_, Solid>) -> bool {
-    ConvexBody::cached(cast.moving()).is_some() && ConvexBody::cached(cast.fixed()).is_some()
-}
-
-/// Convex hull stored with a solid; `None` if the solid is not convex.
-#[derive(Debug)]
-struct CachedBody(Option<ConvexBody>);
-
-/// Convex hull of a convex solid.
-#[derive(Debug)]
-struct ConvexBody {
-    hull: ConvexPolyhedron,
-    /// For each vertex of the hull, a triangle of the solid with this vertex.
-    triangle_at: Vec<u32>,
-    /// Whether each vertex of the solid is a vertex of the hull.
-    has_all_vertices: bool,
-    /// Depth, a length: points of the hull deeper than this below its surface are inside the solid.
-    dent: f64,
-    /// Radius of a ball inside the hull.
-    inner_radius: f64,
-}
-
-impl DerivedData for CachedBody {
-    fn heap_bytes(&self) -> usize {
-        self.0.as_ref().map_or(0, |body| {
-            body.hull.memory_bytes() + body.triangle_at.capacity() * size_of::<u32>()
-        })
-    }
-}
-
-impl CachedBody {
-    fn new(solid: &Solid) -> Self {
-        Self(is_convex(solid).then(|| ConvexBody::new(solid)).flatten())
-    }
-}
-
-impl ConvexBody {
-    /// Returns the hull of a solid, computed on the first request; `None` if the solid is not convex.
-    fn cached(solid: &Solid) -> Option<&Self> {
-        solid.derived_data().get_or_make(|| CachedBody::new(solid))?.0.as_ref()
-    }
-
-    /// Builds the hull of a convex solid; `None` if the points have no hull or it is flat.
-    fn new(solid: &Solid) -> Option<Self> {
-        let hull = ConvexPolyhedron::from_points(solid.vertices()).ok()?.without_input_excess();
-        if hull.dimension() < 3 {
-            return None;
-        }
-        let mut triangle = vec![0; solid.vertices().len()];
-        for (t, corners) in solid.triangles().iter().enumerate() {
-            for &v in corners {
-                triangle[v as usize] = t as u32;
-            }
-        }
-        let triangle_at = hull.input_indices().iter().map(|v| triangle[v.index()]).collect();
-        let has_all_vertices = hull.vertices().len() == solid.vertices().len();
-        let (dent, inner_radius) = (max_dent(solid, &hull), inner_ball_radius(solid, &hull));
-        Some(Self { hull, triangle_at, has_all_vertices, dent, inner_radius })
-    }
-
-    /// Returns the number in the solid of a vertex of the hull.
-    fn solid_vertex(&self, vertex: u32) -> u32 {
-        self.hull.input_indices()[vertex as usize].0
-    }
-}
-
-/// Checks whether a solid is one closed shell that bends outwards at each edge, to within [`CONVEXITY_TOLERANCE`].
-fn is_convex(solid: &Solid) -> bool {
-    let (triangles, vertices) = (solid.triangles(), solid.vertices());
-    let place = |v: u32| vertices[v as usize];
-    let bends_outwards = |t: usize| {
-        let [a, b, c] = triangles[t].map(place);
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        let mut across = solid.neighbours()[t].iter().flat_map(|&n| triangles[n as usize]);
-        across.all(|v| normal.dot(place(v) - a) <= CONVEXITY_TOLERANCE * solid.reach())
-    };
-    solid.is_closed() && solid.shell_bounds().len() == 1 && (0..triangles.len()).all(bends_outwards)
-}
-
-/// Computes the maximum height of the hull above the planes of a convex solid's facets. No point of a facet is
-/// deeper below the surface of the hull.
-fn max_dent(solid: &Solid, hull: &ConvexPolyhedron) -> f64 {
-    let above = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|v| solid.vertices()[v as usize]);
-        let Some(normal) = (b - a).cross(c - a).try_normalize() else { return f64::INFINITY };
-        // The normal of a narrow facet may be inaccurate, so the height counts from its lowest corner.
-        let low = [a, b, c].map(|p| normal.dot(p)).into_iter().fold(f64::INFINITY, f64::min);
-        normal.dot(hull.vertices()[hull.support(normal).index()]) - low
-    };
-    let most = solid.triangles().iter().map(above).fold(0.0, f64::max);
-    most + hull.hull_error() + HEIGHT_ROUNDING * solid.reach()
-}
-
-/// Computes the radius of a ball inside the hull, around the mean of the hull's vertices.
-fn inner_ball_radius(solid: &Solid, hull: &ConvexPolyhedron) -> f64 {
-    let middle = hull.vertices().iter().sum::<DVec3>() / hull.vertices().len() as f64;
-    let depth = |face: u32| {
-        let on = hull.face_vertices(face).next().map_or(middle, |v| hull.vertices()[v as usize]);
-        hull.face_normal(face).dot(on - middle)
-    };
-    let least = (0..hull.face_count() as u32).map(depth).fold(f64::INFINITY, f64::min);
-    least - hull.hull_error() - HEIGHT_ROUNDING * solid.reach()
 }

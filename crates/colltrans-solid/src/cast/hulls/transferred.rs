@@ -12,12 +12,13 @@
 use glam::{DMat3, DVec3};
 
 use super::contact_facets::gap_lower_bound;
-use super::{Hulls, Surface, SurfacePoint};
+use super::{Hulls, Surface};
 use crate::body::Solid;
 use crate::cast::SolidFree;
 use crate::cast::boxes::moves_away;
 use crate::cast::{check_thickness, default_tolerance};
 use crate::solve::contact::{SolidContact, feature_at};
+use crate::solve::hulls::SurfacePoint;
 use crate::solve::scene::{PairFrame, permutes_axes};
 use crate::solve::search::{LeastGap, SLACK};
 use crate::solve::separate;
@@ -71,6 +72,27 @@ impl Hulls<'_> {
             }
             _ => None,
         }
+    }
+
+    /// Returns the first contact of solids without an offset, which may be behind; `None` if the certificate of the hulls
+    /// does not prove it.
+    pub(in crate::cast) fn first_contact(
+        &self,
+        solids: &Cast<'_, Solid>,
+    ) -> Option<Outcome<Solid>> {
+        let transfer = HullTransfer::new(solids, self)?;
+        let found = match &self.first_outcome {
+            Outcome::Separated(apart) => transfer.separated_clearance(&apart.certificate)?,
+            Outcome::Contact(contact) => {
+                transfer.blocked_clearance(contact, f64::NEG_INFINITY, None)?
+            }
+            _ => return None,
+        };
+        Some(match found {
+            Clearance::Blocked { contact, .. } => Outcome::Contact(contact),
+            Clearance::Free(free) => Outcome::Separated(free),
+            Clearance::Overlapping(_) => return None,
+        })
     }
 
     /// Returns the clearance of solids whose hulls touch to within the bounds of their certificate. The bodies of

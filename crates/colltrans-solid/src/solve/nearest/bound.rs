@@ -44,6 +44,9 @@ pub enum Apart {
     /// A plane orthogonal to the vector of the gaps of their boxes along the axes of one body. Of the vectors for both
     /// bodies it is the longer one.
     Way,
+    /// The plane between the two facets that prove the upper bound of the distance. It separates all vertices of both
+    /// nodes.
+    NearestPlane,
     /// Both nodes are leaves, and each pair of their facets was compared individually.
     Examined,
 }
@@ -196,7 +199,7 @@ impl NodePair<'_, '_> {
             Apart::SlabOfMoving => self.past_moving(),
             Apart::SlabOfFixed => self.past_fixed(),
             Apart::Way => self.along_way(),
-            Apart::Examined => return 0.0,
+            Apart::NearestPlane | Apart::Examined => return 0.0,
         };
         if gap.is_nan() { 0.0 } else { (gap - self.axes.rounding).max(0.0) }
     }

@@ -7,9 +7,13 @@
 
 use std::collections::BinaryHeap;
 
+use glam::DVec3;
+
 use super::bound::{Apart, Axes, NodeExtents, NodePair};
 use super::triangle::{self, Corners, GAP_NOISES, Nearest};
+use super::{NearestPoints, SolidNear};
 use crate::solve::scene::{PairFrame, PlacedBody};
+use crate::solve::separate::HEIGHTS;
 use crate::solve::steps::SolidSteps;
 use colltrans_kernel::descent::{
     PairSearch, QueuedPair, VisitedNodes, best_first, node_to_split, pair_with_node,
@@ -185,8 +189,24 @@ impl<F: FnMut([u32; 2], Apart)> PairSearch for DistanceSearch<'_, '_, F> {
     }
 }
 
-/// Returns the lower bound, proven by `reason`, of the distance of all facets of two nodes.
-pub(crate) fn proven_bound(scene: &PairFrame, axes: &Axes, nodes: [u32; 2], reason: Apart) -> f64 {
+/// Returns the lower bound, proven by `reason`, of the distance of all facets of two nodes. `near` proves the upper bound
+/// of the distance of the bodies, by facets that exist.
+pub(crate) fn proven_bound(
+    (scene, axes): (&PairFrame, &Axes),
+    near: &SolidNear,
+    nodes: [u32; 2],
+    reason: Apart,
+) -> f64 {
+    if reason == Apart::NearestPlane {
+        return match *near {
+            SolidNear::Points { triangles, .. } => {
+                nearest_plane_bound(scene, triangles, |side, local| {
+                    max_height_of_node(side, nodes[usize::from(!side.moving)], local)
+                })
+            }
+            SolidNear::Meeting(_) => 0.0,
+        };
+    }
     if reason != Apart::Examined {
         let moving = NodeExtents::new(axes, &scene.moving, nodes[0]);
         let fixed = NodeExtents::new(axes, &scene.fixed, nodes[1]);
@@ -200,4 +220,29 @@ pub(crate) fn proven_bound(scene: &PairFrame, axes: &Axes, nodes: [u32; 2], reas
         }
     }
     least.max(0.0)
+}
+
+/// Returns a lower bound of the distance of two bodies: the gap of the plane between two of their facets. `max_height`
+/// returns the largest height of the vertices of a body along a vector of its frame. Returns 0 if the plane does not
+/// separate the bodies.
+pub(crate) fn nearest_plane_bound(
+    scene: &PairFrame,
+    triangles: [u32; 2],
+    max_height: impl Fn(&PlacedBody, DVec3) -> f64,
+) -> f64 {
+    let normal = NearestPoints::from_triangles(scene, triangles).nearest.normal;
+    let height =
+        |side: &PlacedBody, normal: DVec3| max_height(side, side.matrix.transpose() * normal);
+    let (moving, fixed) = (height(&scene.moving, normal), height(&scene.fixed, -normal));
+    // One noise covers the length of the normal.
+    let gap = normal.dot(scene.fixed.offset[0]) - fixed - moving - (HEIGHTS + 1.0) * scene.noise;
+    if gap.is_nan() { 0.0 } else { gap.max(0.0) }
+}
+
+/// Returns the largest height of the vertices of a node along a vector of the frame of its body.
+pub(crate) fn max_height_of_node(side: &PlacedBody, node: u32, local: DVec3) -> f64 {
+    let facets = side.solid.nodes()[node as usize].facets();
+    let vertices = side.solid.triangles()[facets].as_flattened();
+    let heights = vertices.iter().map(|v| local.dot(side.offset_vertex(*v)));
+    heights.fold(f64::NEG_INFINITY, f64::max)
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::ConvexBody;
-use crate::body::Solid;
+use crate::body::{Solid, offset_vertex};
 use colltrans_kernel::plane::triangle_normal;
 
 /// Maximum number of steps from facet to facet around a vertex or towards a point.
@@ -16,33 +16,40 @@ const MIN_COSINE: f64 = 1e-3;
 /// stack.
 const MAX_NODES: usize = 128;
 
+/// Maximum number of facets of one body that are compared.
+const MAX_FACETS: usize = 4;
+/// Distance of the contact point from a side, in noises, up to which the facet across counts too.
+pub const NEAR_NOISES: f64 = 64.0;
+/// Maximum number of vertices that are compared for the farthest one.
+const MAX_TOP_VERTICES: usize = 32;
+
 /// A convex solid and its hull.
-#[derive(Clone, Copy)]
-pub(super) struct Surface<'a> {
-    pub(super) solid: &'a Solid,
-    pub(super) body: &'a ConvexBody,
+#[derive(Debug, Clone, Copy)]
+pub struct Surface<'a> {
+    pub(crate) solid: &'a Solid,
+    pub body: &'a ConvexBody,
 }
 
 /// Point on a surface with the outward normal there, in the body's frame.
 #[derive(Clone, Copy)]
-pub(super) struct SurfacePoint {
-    pub(super) position: DVec3,
-    pub(super) outward: DVec3,
+pub struct SurfacePoint {
+    pub position: DVec3,
+    pub outward: DVec3,
 }
 
 impl<'a> Surface<'a> {
     /// Returns the surface of a solid; `None` if it is not convex.
-    pub(super) fn of_convex(solid: &'a Solid) -> Option<Self> {
+    pub fn of_convex(solid: &'a Solid) -> Option<Self> {
         Some(Self { solid, body: ConvexBody::cached(solid)? })
     }
 
-    pub(super) fn triangle_corners(&self, triangle: u32) -> [DVec3; 3] {
+    pub(crate) fn triangle_corners(&self, triangle: u32) -> [DVec3; 3] {
         self.solid.triangles()[triangle as usize].map(|v| self.solid.vertices()[v as usize])
     }
 
     /// Iterates over at most [`MAX_STEPS`] triangles around a vertex of the hull, each with the position of the vertex
     /// among its corners.
-    pub(super) fn triangles_around(
+    pub(crate) fn triangles_around(
         &self,
         vertex: u32,
     ) -> impl Iterator<Item = (u32, usize)> + use<'a> {
@@ -59,7 +66,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Finds the triangles on both sides of an edge of the hull; `None` if it is not found as an edge of the solid.
-    pub(super) fn triangles_at_edge(&self, from: u32, to: u32) -> Option<[u32; 2]> {
+    pub(crate) fn triangles_at_edge(&self, from: u32, to: u32) -> Option<[u32; 2]> {
         let to = self.body.solid_vertex(to);
         self.triangles_around(from).find_map(|(t, k)| {
             let leads = self.solid.triangles()[t as usize][(k + 1) % 3] == to;
@@ -70,7 +77,7 @@ impl<'a> Surface<'a> {
     /// Computes for each side of a triangle, seen against the point's normal, the distance of the point inside the side
     /// times the side's projected length, minus `slack` times the sum norm of the side. A positive `slack` is thus
     /// subtracted from the distance at least in full, and a negative one is added at least in full.
-    pub(super) fn distances_inside(
+    pub(crate) fn distances_inside(
         &self,
         triangle: u32,
         point: &SurfacePoint,
@@ -87,7 +94,7 @@ impl<'a> Surface<'a> {
     /// Finds the facet that contains a point, to within `slack` at its sides. The search walks from a facet around
     /// the hull vertex `corner` towards the point. It uses the tree after [`STEPS_BEFORE_TREE`] steps, or at once
     /// if the point is more than that many heights beyond the first facet. `None` if no facet is found.
-    pub(super) fn facet_at(&self, corner: u32, point: &SurfacePoint, slack: f64) -> Option<u32> {
+    pub(crate) fn facet_at(&self, corner: u32, point: &SurfacePoint, slack: f64) -> Option<u32> {
         let mut triangle = self
             .triangles_around(corner)
             .map(|(t, _)| t)
@@ -149,5 +156,72 @@ impl<'a> Surface<'a> {
             }
         }
         None
+    }
+}
+
+impl Surface<'_> {
+    /// Computes the maximum height of the vertices of the solid, offset inwards by `amount`, along a vector of the
+    /// body frame that is at most 1 long, up to the rounding of one product. `None` if the hull lacks vertices, or if
+    /// more than [`MAX_TOP_VERTICES`] may be highest.
+    ///
+    /// Vertices lower than the highest hull vertex `from` by twice the displacement of the offset and by `rounding`, an
+    /// error of heights, cannot be highest. The others are found from `from` over edges of the hull, as the plateau of
+    /// a support point is.
+    pub fn max_height(&self, local: DVec3, from: u32, amount: f64, rounding: f64) -> Option<f64> {
+        let Self { body, solid } = self;
+        let height = |v: u32| local.dot(body.hull.vertices()[v as usize]);
+        let shrinking = solid.shrinking_by(amount);
+        let offset_height = |v: u32| {
+            let v = body.solid_vertex(v) as usize;
+            let at = solid.vertices()[v];
+            local.dot(
+                shrinking.map_or(at, |field| offset_vertex(at, field.displacements[v], amount)),
+            )
+        };
+        let moved = shrinking.map_or(0.0, |field| field.max_displacement * amount.abs());
+        let end = height(from) - 2.0 * moved - rounding - body.hull.plateau_depth();
+        let (mut top, mut count, mut next) = ([from; MAX_TOP_VERTICES], 1, 0);
+        let mut reach = f64::NEG_INFINITY;
+        while body.has_all_vertices && next < count {
+            reach = reach.max(offset_height(top[next]));
+            for &v in body.hull.neighbours(top[next]) {
+                if height(v) < end || top[..count].contains(&v) {
+                    continue;
+                }
+                if count == MAX_TOP_VERTICES {
+                    return None;
+                }
+                top[count] = v;
+                count += 1;
+            }
+            next += 1;
+        }
+        body.has_all_vertices.then_some(reach)
+    }
+}
+
+/// Facets of one body around a point.
+pub struct FacetGroup {
+    facets: [u32; MAX_FACETS],
+    count: usize,
+}
+
+impl FacetGroup {
+    /// Collects the facet at a point, and the facets across its sides within the distance `near` of the point. The
+    /// search begins at the hull vertex `corner`. `None` if no facet is found.
+    pub fn new(surface: &Surface, corner: u32, point: &SurfacePoint, near: f64) -> Option<Self> {
+        let triangle = surface.facet_at(corner, point, near)?;
+        let mut group = Self { facets: [triangle; MAX_FACETS], count: 1 };
+        for (k, inside) in surface.distances_inside(triangle, point, near).into_iter().enumerate() {
+            if inside <= 0.0 {
+                group.facets[group.count] = surface.solid.neighbours()[triangle as usize][k];
+                group.count += 1;
+            }
+        }
+        Some(group)
+    }
+
+    pub fn facets(&self) -> &[u32] {
+        &self.facets[..self.count]
     }
 }

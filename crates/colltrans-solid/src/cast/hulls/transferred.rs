@@ -86,7 +86,7 @@ impl Hulls<'_> {
             Outcome::Contact(contact) => {
                 transfer.blocked_clearance(contact, f64::NEG_INFINITY, None)?
             }
-            _ => return None,
+            Outcome::Grazing(_) => return None,
         };
         Some(match found {
             Clearance::Blocked { contact, .. } => Outcome::Contact(contact),

@@ -411,8 +411,14 @@ class Page {
       const bytes = await source.bytes();
       // Another body may have been loaded meanwhile.
       if (this.placedIn[slot] === this.engine) continue;
+      const before = this.placedIn[slot];
       this.placedIn[slot] = this.engine;
-      await this.engine.load(slot, source.name, source.take, bytes);
+      try {
+        await this.engine.load(slot, source.name, source.take, bytes);
+      } catch (error) {
+        this.placedIn[slot] = before;
+        throw error;
+      }
     }
     this.replaced?.stop("another library has the bodies");
     this.replaced = undefined;
@@ -490,7 +496,9 @@ class Page {
   /** Uses the rejected or current file, or a body of another name, in another way. */
   private async take(slot: Slot, take: Take, name = this.refusals[slot]?.name ?? this.state.parts[slot].file) {
     try {
-      await this.load(slot, name, take);
+      // The library may lack a file that another one refused.
+      const isFile = !isShape(name) && (this.refusals[slot] || this.placedIn[slot] !== this.engine);
+      await this.load(slot, name, take, isFile ? await this.given[slot]?.() : undefined);
       await this.changedBody();
     } catch (error) {
       this.refuse(slot, name, error);

@@ -629,6 +629,21 @@ fn sdf_worlds_nested_models_and_static_models_are_read() {
 }
 
 #[test]
+fn sdf_models_without_links_are_carried_by_a_nested_one() {
+    let ball = "<collision name=\"c\"><geometry><sphere><radius>1</radius></sphere></geometry></collision>";
+    let robot = read_sdf(&format!(
+        "<model name=\"outer\"><model name=\"inner\" canonical_link=\"b\"><link name=\"a\">{ball}</link>\
+         <link name=\"b\">{ball}</link></model><joint name=\"lift\" type=\"prismatic\"><parent>world</parent>\
+         <child>__model__</child><axis><xyz>0 0 1</xyz><limit><upper>2</upper></limit></axis></joint></model>"
+    ));
+    let robot = robot.expect("a robot");
+    let frames: Vec<_> = robot.links().iter().map(|link| (&*link.name, link.frame)).collect();
+    assert_eq!(frames, [("inner::a", None), ("inner::b", Some(0))]);
+    let note = "joint lift: a limit at one end alone is not applied";
+    assert!(robot.notes().iter().any(|said| said == note), "{:?}", robot.notes());
+}
+
+#[test]
 fn sdf_axes_of_old_versions_are_in_the_frame_of_the_model() {
     let robot = |version: &str, axis: &str| {
         let text = format!(

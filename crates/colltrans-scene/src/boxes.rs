@@ -241,8 +241,8 @@ impl Sweep {
     /// it is on the upper one. Therefore no point `y` of `D` is lower: `n.y >= n.corner`. The ball touches `D` at `t`
     /// only if `t n.d >= n.corner - r |n|`. The rounding of `normal` does not matter. The products have an error of at
     /// most `4 u` each, including that of the corner, `r |n|` one of `3.5 u`, and the differences add `2 u`. Together
-    /// this is less than [`BOUND_ERROR`] of the sum of the magnitudes. Underflow is negligible, because `|n| > r`, and a
-    /// radius is at least `2^-200`.
+    /// this is less than [`BOUND_ERROR`] of the sum of the magnitudes. Underflow is negligible: `|n| > r`, and a
+    /// radius that is not tiny is far above it, while a tiny one only changes `r |n|`, far below the error allowed.
     #[inline]
     fn entry_of_plane(&self, corner: DVec3, normal: DVec3) -> f64 {
         let (size, length) = (normal.abs(), normal.length());

@@ -1128,7 +1128,7 @@ def stopping_facets(
 
     With a gap they meet where they are as near as the gap. Their distance is a convex function of
     the translation, so they do not meet before the lower bound if they are at least the gap apart
-    there and at most the gap at the upper bound.
+    there and at most the gap at a greater upper bound. Equal bounds may be those of the exit.
     """
     named = listed(stop["facets"], 2)
     f, g = (whole(k, len(body.facets)) for k, body in zip(named, (moving, fixed), strict=True))
@@ -1140,11 +1140,12 @@ def stopping_facets(
         other, square = fixed.facet(g), core_gap * core_gap
         is_slight = core_gap <= _SLIGHT * _NOISE * (size(moving, fixed) + core_gap)
         is_before = bool(ends) and are_apart(swept[0], other, square)
-        if is_before and not are_apart(swept[1], other, square, strictly=True):
+        is_met = is_before and not are_apart(swept[1], other, square, strictly=True)
+        if is_met and ends[0] < ends[1]:
             near = f"come as near as {float(core_gap)!r}"
             report.holds.append(f"{names} {near} within the bounds claimed")
             return
-        if ends and not tolerance and not is_slight:
+        if ends and not is_met and not tolerance and not is_slight:
             raise RefusedError(f"{names} are not {float(core_gap)!r} apart within the bounds")
         report.unchecked.append(f"where {names} are {float(core_gap)!r} apart")
         return

@@ -339,17 +339,19 @@ impl<'a> Tree<'a> {
         Err(self.error(element, "it is attached to itself"))
     }
 
-    /// Returns the link that carries the frame of a model: the named one, or the first one.
+    /// Returns what carries the frame of a model: the named link, else the first link, else the first nested model.
     fn canonical_link(&self, model: usize, inner: usize) -> Result<Option<usize>, ReadError> {
         let element = self.nodes[model].element;
         if let Some(name) = reference(element, "canonical_link") {
             return self.find(inner, name, element);
         }
-        let mut links = (model + 1..self.nodes.len()).filter(|k| self.nodes[*k].kind == Kind::Link);
-        let prefix = &self.scopes[inner].prefix;
-        let own = links.clone().find(|k| self.nodes[*k].scope == inner);
-        let first = own.or_else(|| links.find(|k| self.nodes[*k].name.starts_with(prefix)));
-        first.map(Some).ok_or_else(|| self.error(element, "it has no link"))
+        let first = |is_wanted: fn(Kind) -> bool| {
+            let mut nodes = model + 1..self.nodes.len();
+            nodes.find(|k| self.nodes[*k].scope == inner && is_wanted(self.nodes[*k].kind))
+        };
+        let found = first(|kind| kind == Kind::Link)
+            .or_else(|| first(|kind| matches!(kind, Kind::Model(_))));
+        found.map(Some).ok_or_else(|| self.error(element, "it has no link"))
     }
 
     /// Returns the nodes of a kind, in the order of the file.
@@ -535,7 +537,17 @@ impl<'a> Tree<'a> {
                     .is_some_and(|axis| axis.first_child("mimic").is_some())
         };
         let note = "mimic elements are not applied: give values of each joint";
-        self.nodes.iter().any(mimics).then(|| note.to_owned()).into_iter().collect()
+        let mimic = self.nodes.iter().any(mimics).then(|| note.to_owned());
+        let is_end = |limit: &Element, name| {
+            let end = limit.first_child(name).map(numbers::<1>);
+            end.is_some_and(|end| end.is_ok_and(|[x]| x.abs() < NO_LIMIT))
+        };
+        let one_sided = self.nodes.iter().filter_map(|node| {
+            let limit = node.element.first_child("axis")?.first_child("limit")?;
+            (node.kind == Kind::Joint && is_end(limit, "lower") != is_end(limit, "upper"))
+                .then(|| format!("joint {}: a limit at one end alone is not applied", node.name))
+        });
+        mimic.into_iter().chain(one_sided).collect()
     }
 }
 

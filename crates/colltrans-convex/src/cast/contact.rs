@@ -14,8 +14,9 @@ use colltrans_kernel::noise::Noise;
 pub struct WitnessPoints {
     /// Point on the moving body, in its *start* pose.
     pub on_moving: DVec3,
-    /// Point on the fixed body: the contact point. It equals `on_moving + translation * direction` up to
-    /// rounding, or up to the minimum gap of the cast. It is not unique if an edge or a face lies on the other body.
+    /// Point on the fixed body: the contact point. It equals `on_moving + translation * direction` up to the difference
+    /// of the certificate's bounds, or up to the minimum gap of the cast. It is not unique if an edge or a face lies on
+    /// the other body.
     pub on_fixed: DVec3,
 }
 
@@ -34,7 +35,10 @@ impl Contact {
         let setting = &cast.setting;
         let certificate = &self.certificate;
         let cores = setting.core_points(&certificate.pairs, &certificate.weights);
-        let by = setting.direction * self.translation;
+        // The points of the cores are proven to be near each other at the upper bound, which may be far from the
+        // translation if the bodies slide along each other.
+        let end = certificate.upper;
+        let by = setting.direction * if end.is_finite() { end } else { self.translation };
         let [on_moving, on_fixed] = setting.surface_points(cores, by, self.normal);
         WitnessPoints { on_moving, on_fixed }
     }

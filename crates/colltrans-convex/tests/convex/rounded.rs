@@ -9,7 +9,7 @@ use colltrans_convex::{
 use colltrans_testkit::bodies::{at_xyz as at, block as cuboid};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::min_gap::GapJudge;
-use colltrans_testkit::oracle::rounded::RoundedJudge;
+use colltrans_testkit::oracle::rounded::{RoundedJudge, judge_all};
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
 use glam::{DQuat, DVec3};
@@ -106,6 +106,25 @@ fn parallel_capsules_are_as_far_apart_as_their_axes() {
             assert!((distance.upper - gap).abs() < 1e-13, "{x} {z} {distance:?}");
         }
     }
+}
+
+/// Bodies that slide along each other meet within a long interval. Their points are those at its end.
+#[test]
+fn contact_points_of_sliding_bodies_are_on_their_surfaces() {
+    let block = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
+    let (moving, fixed) =
+        (block.clone().rounded(0.4375).expect("a body"), block.rounded(0.0625).expect("a body"));
+    let mut sliding = 0;
+    for k in 1..40 {
+        let turn = DQuat::from_axis_angle(DVec3::NEG_Y, 5e-12);
+        let place = DVec3::new(-1.5 + f64::from(k) * -5e-14, 0.25, -0.5);
+        let pose = Pose::new(turn, place).expect("a pose");
+        let cast = Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), DVec3::Z).expect("a cast");
+        let answers = judge_all(&cast, &mut Tracker::new(), 0.25, false).expect("right answers");
+        let Outcome::Contact(contact) = answers.expect("answers").outcome else { continue };
+        sliding += u32::from(contact.certificate.upper - contact.certificate.lower > 1e-4);
+    }
+    assert!(sliding > 5, "{sliding}");
 }
 
 #[test]

@@ -261,7 +261,7 @@ impl OffsetField {
     }
 }
 
-/// Minimum number of elements for which threads are started, and number of elements that a thread takes at once.
+/// Number of elements that a thread takes at once. Threads are started for at least two such chunks.
 const CHUNK: usize = 4_096;
 
 /// Fills a slice in chunks, on all processors if there are several chunks. `fill` gets the position of the first element

@@ -7,7 +7,6 @@ use super::gjk::{Goal, unit_vector};
 use super::simplex::{Corner, Simplex};
 use super::{DescentResult, Difference};
 use crate::setting::VertexPair;
-use colltrans_kernel::noise::UNIT_VECTOR;
 use colltrans_kernel::real::RealVector;
 
 impl Difference<'_> {
@@ -70,11 +69,6 @@ fn record_simplex<const N: usize>(
     nearest: &RealVector<f64>,
     found: &mut DescentResult,
 ) {
-    // The weights of a triangle without area are not numbers, and none remains.
-    let (_, weights) = simplex.pairs_and_weights();
-    if (weights.iter().sum::<f64>() - 1.0).abs() > UNIT_VECTOR {
-        return;
-    }
     let point = nearest.to_dvec3();
     let distance = point.length();
     if distance >= found.upper {

@@ -110,6 +110,11 @@ impl<T: Real> Simplex<T> {
             }
         }
         self.weights[kept..].fill(T::ZERO);
+        if kept == 0 {
+            // Corners that coincide up to rounding have weights that are not numbers.
+            self.weights[0] = T::from_f64(1.0);
+            nearest = self.at[0];
+        }
         self.count = kept.max(1);
         nearest
     }

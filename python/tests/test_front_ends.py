@@ -55,7 +55,7 @@ def page(lines: list[str]) -> list[dict[str, Any]]:
         "native",
         # As `.ci/run tests` compiles it.
         "--features",
-        "assembly,motion",
+        "assembly,min-gap",
         "--config",
         ROOT / ".ci/quick.toml",
         "--manifest-path",

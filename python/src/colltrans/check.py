@@ -1140,12 +1140,12 @@ def stopping_facets(
         other, square = fixed.facet(g), core_gap * core_gap
         is_slight = core_gap <= _SLIGHT * _NOISE * (size(moving, fixed) + core_gap)
         is_before = bool(ends) and are_apart(swept[0], other, square)
-        is_met = is_before and not are_apart(swept[1], other, square, strictly=True)
-        if is_met and ends[0] < ends[1]:
+        reaches_gap = is_before and not are_apart(swept[1], other, square, strictly=True)
+        if reaches_gap and ends[0] < ends[1]:
             near = f"come as near as {float(core_gap)!r}"
             report.holds.append(f"{names} {near} within the bounds claimed")
             return
-        if ends and not is_met and not tolerance and not is_slight:
+        if ends and not reaches_gap and not tolerance and not is_slight:
             raise RefusedError(f"{names} are not {float(core_gap)!r} apart within the bounds")
         report.unchecked.append(f"where {names} are {float(core_gap)!r} apart")
         return

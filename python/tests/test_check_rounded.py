@@ -204,7 +204,7 @@ def test_both_verifiers_agree_about_forged_proofs(cli: Path, tmp_path: Path, nam
     for change, other in forged(file):
         library, fractions, all_of_it = verdicts(cli, tmp_path, other)
         assert fractions or not library, change
-        # The checker says which parts it leaves to the library.
+        # The report lists the parts that only the library checks.
         assert library or not (fractions and all_of_it), change
         refused += not fractions
     assert refused > 10

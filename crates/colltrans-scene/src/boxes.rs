@@ -210,7 +210,7 @@ impl Sweep {
     /// The differences of points of the other box and the core form a box `D`. The boxes meet where the distance of
     /// `t d` from `D` is at most the radius. This distance is a convex function of `t`. Newton's method from a smaller
     /// translation therefore approaches the entry from below. Each step is the bound of the plane through the point of
-    /// `D` nearest to `t d` ([`Self::entry_of_plane`]), which is proven whatever `t` is.
+    /// `D` nearest to `t d` ([`Self::entry_of_plane`]), which is proven for any `t`.
     #[inline]
     pub(super) fn entry(&self, other: &Aabb) -> f64 {
         let mut first = self.entry_of_outer_box(other);

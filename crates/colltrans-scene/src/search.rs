@@ -135,8 +135,8 @@ impl SceneQuery<'_> {
     /// Computes how far the moving body can move along a direction of any length, and the obstacle that stops it.
     ///
     /// The answer is that of [`Cast::clearance`] of each obstacle. Obstacles behind the body do not stop it, nor do
-    /// those along which it slides within the graze tolerance, nor those whose boxes the swept rounded box does not meet. For
-    /// the first obstacle within a limited travel, see [`Self::clearance_before`].
+    /// those along which it slides within the graze tolerance, nor those whose boxes the swept rounded box does not
+    /// meet. For the first obstacle within a limited travel, see [`Self::clearance_before`].
     ///
     /// # Errors
     /// Returns an error if the direction is zero, not finite or out of range, and the errors of [`Cast::clearance`] of

@@ -484,7 +484,7 @@ def box_tree(triangles: Sequence[Corners]) -> Box:
 def near_facets(
     trees: tuple[Box, Box], is_far: Callable[[Bounds[int], Bounds[int]], bool]
 ) -> Iterator[tuple[int, int] | None]:
-    """Visits pairs of boxes of two trees, and yields each pair of facets that it comes to.
+    """Visits pairs of boxes of two trees, and yields each pair of facets that remains.
 
     It skips pairs of boxes with ``is_far``, and yields None for each other pair of boxes, so
     that callers can count.

@@ -190,7 +190,7 @@ struct Tree<'a> {
     scopes: Vec<Scope>,
     nodes: Vec<Node<'a>>,
     by_name: HashMap<String, usize>,
-    /// The poses in the world of the first nodes, as far as they were computed.
+    /// The pose of each node in the world; `None` before it is computed.
     placed: Vec<Option<DAffine3>>,
 }
 

@@ -11,8 +11,8 @@
 //! Programming 11, 1976). While some `m` violates the second condition, the lowest such `m` is added to the
 //! simplex, whose nearest point is found by trying all its faces. `|v|` decreases strictly, so the algorithm
 //! terminates. The same search in `f64` guesses the first simplex; the result does not depend on it, because both
-//! conditions are checked exactly. All numbers are exact, so the result satisfies both conditions exactly. Only vertices are used,
-//! no faces or edges. Divisions are avoided by `v = V / D` with `D > 0`, both dyadic.
+//! conditions are checked exactly. All numbers are exact, so the result satisfies both conditions exactly. Only
+//! vertices are used, no faces or edges. Divisions are avoided by `v = V / D` with `D > 0`, both dyadic.
 //!
 //! [`brute_force`] is independent: it compares all pairs of vertices and triangles, and of edges, in `f64`.
 

@@ -279,6 +279,14 @@ def test_a_body_without_some_input_points_is_accepted() -> None:
         assert refused(file), wrong
 
 
+def test_a_stated_rounding_may_include_hull_errors() -> None:
+    file = proof("contacts")
+    file["statement"]["contacts"]["first"]["rounding"] = 1e-9
+    assert refused(file)
+    file["bodies"][0]["convex"]["hull_error"] = 1e-9
+    assert not refused(file)
+
+
 def test_a_slide_is_checked_as_a_slide() -> None:
     file = proof("slide")
     report = check.check(json.dumps(file))

@@ -142,11 +142,11 @@ impl Noise {
         margin.max(0.0) + WIDENING_TOUCHES * self.touching_distance()
     }
 
-    /// Returns the largest half-side of a widening rectangle. Its margin is at most one noise, because shadows that
-    /// are farther apart are separated.
+    /// Returns the largest half-side of a widening rectangle. Its margin is at most one noise and `excess`, the
+    /// distance of input points from the bodies, because shadows that are farther apart are separated.
     #[inline]
-    pub fn max_widening_half_side(self) -> f64 {
-        self.widening_half_side(self.0)
+    pub fn max_widening_half_side(self, excess: f64) -> f64 {
+        self.widening_half_side(self.0 + excess)
     }
 
     /// Returns the largest difference of the estimates of the upper and the lower bound that rounding can cause, as a
@@ -227,9 +227,9 @@ impl Noise {
     }
 
     /// Returns the maximum distance of the witness points of a certificate for bodies that were widened
-    /// laterally.
+    /// laterally. `excess` is that of [`Self::max_widening_half_side`].
     #[inline]
-    pub fn widened_residual_tolerance(self) -> f64 {
-        WIDENING_CORNER * self.max_widening_half_side() + BOUND_NOISES * self.0
+    pub fn widened_residual_tolerance(self, excess: f64) -> f64 {
+        WIDENING_CORNER * self.max_widening_half_side(excess) + BOUND_NOISES * self.0
     }
 }

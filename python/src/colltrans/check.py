@@ -943,14 +943,17 @@ def never_near(min_gap: Fraction) -> str:
     return f"are never as near as {float(min_gap)!r}" if min_gap else "never meet"
 
 
-def stated(d: Vector, proof: Any, noise: Fraction, min_gap: Fraction) -> None:
-    """Checks that the stated rounding of a certificate is within limits; it proves nothing."""
+def stated(d: Vector, proof: Any, noise: Fraction, min_gap: Fraction, hull_error: Fraction) -> None:
+    """Checks that the stated rounding of a certificate is within limits; it proves nothing.
+
+    ``hull_error`` bounds how far the inputs of both bodies reach beyond their vertices.
+    """
     normal, rounding = vector(proof["normal"]), number(proof["rounding"])
     sideways = cross(normal, d)
     share = root_above(dot(sideways, sideways) / dot(d, d))
     most, across = _MOST_STATED
     slight = 2 * min_gap if min_gap <= _SLIGHT * noise else Fraction()
-    limit = (most + across * share) * noise + slight
+    limit = (most + across * share) * noise + slight + (2 + 6 * share) * hull_error
     if not 0 <= rounding * dot(normal, d) <= limit:
         raise RefusedError(f"rounding does not explain {float(rounding)!r}")
 
@@ -985,7 +988,9 @@ def contact(
     report.holds.append(f"{which}: the bodies {meet} at no translation below {float(lower)!r}")
 
     noise = _NOISE * (size(moving, fixed) + min_gap)
-    stated(d, proof, noise, min_gap)
+    # Poses stretch the errors by at most four deviations from a rotation.
+    hull_error = (moving.shape.hull_error + fixed.shape.hull_error) * (1 + 4 * _TURN)
+    stated(d, proof, noise, min_gap, hull_error)
     weights = listed(proof["weights"], 3)
     ends = ends_of(moving, fixed, listed(proof["pairs"], 3))
     corners = [minus(q, p) for p, q in ends]
@@ -994,7 +999,7 @@ def contact(
     off = minus(point, scaled(d, estimate))
     miss = dot(off, off)
     if proof["upper"] is None:
-        if not min_gap and miss > (_MISS_WIDENED * noise) ** 2:
+        if not min_gap and miss > (_MISS_WIDENED * noise + Fraction(4, 3) * hull_error) ** 2:
             raise RefusedError(f"{which}: the witness points miss each other")
         report.unchecked.append(f"{which}: no upper bound is claimed")
         return

@@ -404,7 +404,7 @@ impl Certificate {
         // Certificates of widened bodies have no upper bound, and their witness points may differ by the
         // widening.
         let tolerance = if self.upper == f64::INFINITY {
-            noise.widened_residual_tolerance()
+            noise.widened_residual_tolerance(setting.input_excess())
         } else {
             noise.residual_tolerance()
         };
@@ -464,12 +464,14 @@ fn reduced_by_gap(distance: f64, normal: DVec3, min_gap: f64) -> f64 {
 
 /// Returns the largest rounding that a certificate may state. The field proves nothing.
 ///
-/// The limit is twice the rounding that a search states. It assumes that the bodies reach beyond their
-/// support points by at most the tolerance of coplanar vertices.
+/// The limit is twice the rounding that a search states. It assumes that the bodies reach beyond their support points
+/// by at most the tolerance of coplanar vertices, and that their inputs reach farther by at most
+/// [`TwoBodies::input_excess`](crate::setting::TwoBodies::input_excess). A search with a gap states this excess twice.
 fn max_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
-    let rounding = (noise.upper_bound_margin() + noise.lower_bound_margin() + noise.max_excess())
-        / normal.dot(setting.direction);
-    2.0 * (gap_rounding(setting, normal, noise, noise.max_widening_half_side()) + rounding)
+    let margins = noise.upper_bound_margin() + noise.lower_bound_margin();
+    let excess = setting.input_excess();
+    let rounding = (margins + noise.max_excess() + excess) / normal.dot(setting.direction);
+    2.0 * (gap_rounding(setting, normal, noise, noise.max_widening_half_side(excess)) + rounding)
 }
 
 /// Checks that a normal is a unit vector and orthogonal to the direction, to within rounding.
@@ -514,8 +516,25 @@ impl Separation {
         setting: &Setting,
         min_gap: f64,
     ) -> Result<f64, CertificateError> {
+        self.verify_margin(setting, min_gap, |core_margin| setting.less_radii(core_margin))
+    }
+
+    /// Checks the separation as one of the cores of rounded bodies. Returns the proven margin.
+    pub(crate) fn verify_of_cores(&self, setting: &Setting) -> Result<f64, CertificateError> {
+        self.verify_margin(setting, 0.0, |core_margin| core_margin)
+    }
+
+    /// Checks that the margin is larger than `min_gap`, and at most the proven one. `of_bodies` returns this one from
+    /// that of the cores.
+    #[inline]
+    fn verify_margin(
+        &self,
+        setting: &Setting,
+        min_gap: f64,
+        of_bodies: impl Fn(f64) -> f64,
+    ) -> Result<f64, CertificateError> {
         check_lateral_normal(setting, self.normal)?;
-        let proven = setting.less_radii(shadow_gap(setting, self.normal));
+        let proven = of_bodies(shadow_gap(setting, self.normal));
         let claimed = self.margin;
         if claimed > min_gap && claimed <= proven {
             Ok(proven)

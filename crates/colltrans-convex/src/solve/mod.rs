@@ -615,13 +615,13 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
         found
     }
 
-    /// Checks that a separation passes verification.
+    /// Checks that a separation of the cores passes verification. That of the rounded bodies is proven by the caller.
     ///
     /// A verifier rounds differently and may find other support points. Both together lower the margin
     /// by less than twice the touching distance. A smaller margin is verified here.
     #[inline]
     fn passes_verification(&self, certificate: &Separation) -> bool {
         certificate.margin > 2.0 * self.context.difference.noise.touching_distance()
-            || certificate.verify_with_gap(self.context.difference.setting, 0.0).is_ok()
+            || certificate.verify_of_cores(self.context.difference.setting).is_ok()
     }
 }

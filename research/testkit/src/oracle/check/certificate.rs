@@ -31,8 +31,11 @@ const MARGIN_ROUNDINGS: f64 = 5.0;
 const RESIDUAL_ROUNDINGS: f64 = 2.0;
 
 /// Maximum residual of the witness points of a grazing contact in noises. The library widens such bodies by up
-/// to 33 noises along each lateral axis.
+/// to 33 noises and their hull errors along each lateral axis.
 const GRAZING_RESIDUAL_ROUNDINGS: f64 = 48.0;
+
+/// Upper bound on the length of the library's widening in multiples of its longer half-side.
+const WIDENING_CORNER: f64 = 1.3;
 
 /// Maximum relative error of the length of a unit vector.
 const UNIT_ERROR: f64 = 16.0 * f64::EPSILON;
@@ -296,7 +299,8 @@ impl Judge<'_> {
         );
         let tolerated = self.border();
         require!(claimed <= tolerated, "overlap {claimed:e} tolerated as {tolerated:e}");
-        let proof = self.check_contact_within(&grazing.contact, GRAZING_RESIDUAL_ROUNDINGS)?;
+        let roundings = GRAZING_RESIDUAL_ROUNDINGS + WIDENING_CORNER * self.hull_errors() / noise;
+        let proof = self.check_contact_within(&grazing.contact, roundings)?;
         // The residual bounds the overlap from below.
         Ok(Proof { exact: true, ..proof })
     }

@@ -103,10 +103,10 @@ impl Sampler<ConvexPolyhedron> for ConvexSampler {
         let (plane, points) = match plane {
             Some(plane) if plane.gap > 0.0 || min_gap >= 0.0 => {
                 let gap = at.bodies.less_radii(plane.gap);
-                (Some(PlaneGap { gap, ..plane }), found.weighted_pairs_and_weights())
+                (Some(PlaneGap { gap, ..plane }), found.weighted_pairs_and_weights(&difference))
             }
             _ if min_gap < 0.0 => self.least_overlap_plane(&difference),
-            _ => (None, found.weighted_pairs_and_weights()),
+            _ => (None, found.weighted_pairs_and_weights(&difference)),
         };
         let floor = 4.0 * difference.noise.point_error()
             + error

@@ -207,6 +207,33 @@ fn rounded_bodies_of_all_families_are_right() {
     assert!(contacts > cases(200) && deep > cases(50), "{contacts} {deep}");
 }
 
+/// Settings whose answers were once wrong or refused.
+#[test]
+fn rounded_bodies_of_single_settings_are_right() {
+    let answers_to = |family, seed, [r, s]: [f64; 2]| {
+        let setting = setting(family, seed);
+        let bodies = setting.bodies().expect("bodies");
+        let moving = bodies.moving.rounded(r).expect("a rounded body");
+        let fixed = bodies.fixed.rounded(s).expect("a rounded body");
+        let [p, q] = [moving.at(setting.moving_pose), fixed.at(setting.fixed_pose)];
+        let cast = Cast::new(p, q, setting.direction).expect("a query");
+        let found = judge_all(&cast, &mut Tracker::new(), 0.25, false).expect("right answers");
+        found.expect("answers")
+    };
+    // The input reaches 27 noises beyond the vertices, and the certificate states this excess twice.
+    answers_to("narrow-rings", 4_294_972_037, [0.324_498_621_002_215_16; 2]);
+    // A sample of the distance lies inside of the difference of the cores.
+    let radii = [1.521_887_221_190_571_3e-13, 5.920_844_419_922_884e-14];
+    answers_to("nearly-straight", 4_294_973_763, radii);
+    // The cores meet in a tetrahedron that is flatter than rounded volumes resolve.
+    let radii = [2.778_831_260_381_336e-14, 1.409_793_752_603_092e-14];
+    let flat = answers_to("nearly-straight", 4_294_969_181, radii);
+    assert_eq!(flat.distance.upper, 0.0);
+    // The shadows of the cores are farther apart than the sum of the radii by 13 noises.
+    let peg = answers_to("peg", 4_294_969_511, [1.032_445_940_458_028_2e-14; 2]);
+    assert!(matches!(peg.outcome, Outcome::Separated(_)), "{:?}", peg.outcome);
+}
+
 #[test]
 fn concentric_and_touching_bodies_have_depths() {
     let world = Pose::IDENTITY;

@@ -129,7 +129,7 @@ impl<O: Observer> SampledSet for ConvexDifference<'_, '_, '_, O> {
             let at = self.setting.difference_point(plane.lowest);
             self.report_plane(plane.gap.normal, (plane.lowest, at), plane.excess)
         });
-        let (pairs, weights) = found.weighted_pairs_and_weights();
+        let (pairs, weights) = found.weighted_pairs_and_weights(&difference);
         // In the frame of the setting, where the origin is the unmoved body.
         let corners = [0, 1, 2].map(|k| self.setting.difference_point(pairs[k]));
         let count = weights.iter().filter(|weight| **weight > 0.0).count();

@@ -9,6 +9,7 @@ use super::simplex::{Corner, Simplex};
 use super::{DescentResult, Difference};
 use crate::setting::VertexPair;
 use colltrans_kernel::real::{DoubleWord, Real, RealVector};
+use colltrans_kernel::volume::{contains_origin, weights_of_origin};
 
 /// Maximum number of steps, above all that were observed.
 const MAX_STEPS: usize = 128;
@@ -41,6 +42,12 @@ pub(super) trait Coordinate: Real {
     /// Computes the point of a vertex pair.
     fn point(difference: &Difference, pair: VertexPair) -> RealVector<Self>;
 
+    /// Returns the weights of the origin in a tetrahedron so flat that rounded weights miss it, in exact arithmetic.
+    /// `None` if the origin is not inside, or if the type leaves the decision to a more accurate one.
+    fn weights_in_flat_tetrahedron(_: &Difference, _: &[VertexPair; 4]) -> Option<[f64; 4]> {
+        None
+    }
+
     /// Converts a corner with rounded coordinates to this number type.
     fn convert_corner(difference: &Difference, corner: &Corner<f64>) -> Corner<Self> {
         Corner { at: Self::point(difference, corner.pair), pair: corner.pair }
@@ -63,6 +70,16 @@ impl Coordinate for DoubleWord {
     fn point(difference: &Difference, pair: VertexPair) -> RealVector<Self> {
         difference.bodies.terms(pair).double_word_point()
     }
+
+    fn weights_in_flat_tetrahedron(
+        difference: &Difference,
+        pairs: &[VertexPair; 4],
+    ) -> Option<[f64; 4]> {
+        let corners = pairs.map(|pair| difference.bodies.terms(pair));
+        let is_inside = contains_origin(&corners, difference.bodies.size());
+        let weights = if is_inside { weights_of_origin(&corners) } else { None };
+        weights.filter(|weights| weights.iter().all(|weight| *weight > 0.0))
+    }
 }
 
 /// Descends from `simplex` to the point of `M` nearest to the origin.
@@ -81,6 +98,11 @@ pub(super) fn descend_to_nearest<T: Coordinate>(
     for _ in 0..MAX_STEPS {
         let mut nearest = simplex.reduce();
         if simplex.is_full() && nearest.to_dvec3().length() > noise {
+            let (pairs, _) = simplex.pairs_and_weights();
+            if let Some(weights) = T::weights_in_flat_tetrahedron(difference, &pairs) {
+                found.record_enclosure(pairs, weights);
+                return;
+            }
             nearest = simplex.reduce_to_face();
         }
         let square = nearest.dot(&nearest);

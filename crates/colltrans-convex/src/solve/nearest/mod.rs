@@ -237,6 +237,11 @@ impl DescentResult {
         }
     }
 
+    /// Stores four pairs that enclose the origin, with its weights.
+    fn record_enclosure(&mut self, pairs: [VertexPair; 4], weights: [f64; 4]) {
+        (self.upper, self.pairs, self.weights, self.full) = (0.0, pairs, weights, true);
+    }
+
     /// Stores the plane perpendicular to the unit vector `normal` at `lowest`, if its gap exceeds the stored one.
     #[inline]
     fn record_plane(&mut self, normal: DVec3, lowest: &Corner<f64>) {
@@ -393,12 +398,15 @@ fn simplex_normal(difference: &Difference, found: &DescentResult) -> Option<DVec
 #[cold]
 #[inline(never)]
 fn descend_in_twice_precision(difference: &Difference, goal: &Goal, found: &mut DescentResult) {
-    let corner = |pair| Corner { at: difference.bodies.terms(pair).double_word_point(), pair };
-    if let Some(simplex) =
-        Simplex::<DoubleWord>::from_corners(found.weighted_pairs().take(3).map(corner))
-    {
-        descend_to_nearest::<DoubleWord>(difference, simplex, goal, found);
+    let corners = found.weighted_pairs().take(3).map(|pair| double_word_corner(difference, pair));
+    if let Some(simplex) = Simplex::from_corners(corners) {
+        descend_to_nearest(difference, simplex, goal, found);
     }
+}
+
+/// Returns the point of `M` of a vertex pair in numbers of twice the precision, as a corner of a simplex.
+fn double_word_corner(difference: &Difference, pair: VertexPair) -> Corner<DoubleWord> {
+    Corner { at: difference.bodies.terms(pair).double_word_point(), pair }
 }
 
 /// A plane between the bodies.
@@ -455,15 +463,28 @@ impl DescentResult {
         self.upper - self.lower.max(0.0)
     }
 
-    /// Returns the nearest points as up to three vertex pairs and their weights. Unused weights are 0.
+    /// Returns the nearest points as up to three vertex pairs and their weights. Unused weights are 0. If four pairs
+    /// enclose the origin, the points are those of the nearest of their faces.
     #[inline]
-    pub fn weighted_pairs_and_weights(&self) -> ([VertexPair; 3], [f64; 3]) {
-        let mut points = ([self.pairs[0]; 3], [0.0; 3]);
-        let weighted = self.pairs.iter().zip(self.weights).filter(|(_, weight)| *weight > 0.0);
-        for (k, (pair, weight)) in weighted.take(3).enumerate() {
-            (points.0[k], points.1[k]) = (*pair, weight);
+    pub fn weighted_pairs_and_weights(
+        &self,
+        difference: &Difference,
+    ) -> ([VertexPair; 3], [f64; 3]) {
+        if self.weights[3] > 0.0 {
+            return self.nearest_face(difference);
         }
-        points
+        first_three_weighted(&self.pairs, &self.weights)
+    }
+
+    /// Returns the point of the faces of the four pairs that is nearest to the origin.
+    #[cold]
+    fn nearest_face(&self, difference: &Difference) -> ([VertexPair; 3], [f64; 3]) {
+        let corners = self.pairs.map(|pair| double_word_corner(difference, pair));
+        let mut simplex = Simplex::new(corners[0]);
+        corners[1..].iter().for_each(|corner| simplex.push(*corner));
+        simplex.reduce_to_face();
+        let (pairs, weights) = simplex.pairs_and_weights();
+        first_three_weighted(&pairs, &weights)
     }
 
     /// Returns the nearest points with the proven upper bound of the distance. The bound is 0 if four pairs are proven
@@ -517,6 +538,20 @@ impl DescentResult {
             .find(|pairs| contains_origin(&pairs.map(|pair| bodies.terms(pair)), bodies.size()))?;
         Some(common_point(difference, pairs, weights))
     }
+}
+
+/// Returns the first three pairs with a positive weight. Unused weights are 0.
+#[inline]
+fn first_three_weighted(
+    pairs: &[VertexPair; 4],
+    weights: &[f64; 4],
+) -> ([VertexPair; 3], [f64; 3]) {
+    let mut points = ([pairs[0]; 3], [0.0; 3]);
+    let weighted = pairs.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
+    for (k, (pair, weight)) in weighted.take(3).enumerate() {
+        (points.0[k], points.1[k]) = (*pair, *weight);
+    }
+    points
 }
 
 /// Returns the common point of bodies, given four pairs that enclose the origin.

@@ -8,7 +8,7 @@ use crate::body::{ConvexPolyhedron, Features, OwnFeature, feature_in_plane};
 use crate::pair::{Pair, PairBody};
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::{TwoBodies, VertexPair, check_length};
-use crate::solve::nearest::{DescentResult, Difference, NearestPairs, nearest_points};
+use crate::solve::nearest::{DescentResult, Difference, GapPlane, NearestPairs, nearest_points};
 
 /// Largest accepted difference of the bounds, in noises, in addition to the reach of the bodies beyond
 /// support points.
@@ -19,6 +19,21 @@ impl PairBody for ConvexPolyhedron {
 
     fn distance(pair: &Pair<'_>) -> Result<Distance, QueryError> {
         distance_from(pair, &mut NearestPairs::default())
+    }
+
+    #[inline]
+    fn distance_bounds(pair: &Pair<'_>) -> Result<[f64; 2], QueryError> {
+        let bodies = &pair.bodies;
+        let difference = Difference::new(bodies);
+        let [core_gap, between_cores] = match difference.point_bounds() {
+            Some(bounds) => bounds,
+            None => {
+                let found = nearest_points(&difference, &NearestPairs::default(), None);
+                let (near, plane) = proofs_about_cores(&difference, &found)?;
+                [plane.map_or(0.0, |plane| plane.gap.gap), near.distance]
+            }
+        };
+        Ok([bodies.less_radii(core_gap).max(0.0), bodies.distance_less_radii(between_cores)])
     }
 
     fn within(pair: &Pair<'_>, length: f64) -> Result<(Within, Steps), QueryError> {
@@ -75,6 +90,27 @@ pub fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, 
     distance_of_search(&difference, &found, started_from)
 }
 
+/// Returns the proofs of both bounds of the distance of the cores: points, and a plane if its gap is positive.
+///
+/// Returns [`QueryError::NotConverged`] if the bounds differ by more than rounding explains.
+#[inline]
+fn proofs_about_cores(
+    difference: &Difference,
+    found: &DescentResult,
+) -> Result<(NearPoints, Option<GapPlane>), QueryError> {
+    let near = found.near_points(difference);
+    let plane = found.separating_plane(difference);
+    let beyond = plane.map_or(0.0, |plane| plane.excess);
+    let plane = plane.filter(|plane| plane.gap.gap > 0.0);
+    let core_gap = plane.map_or(0.0, |plane| plane.gap.gap);
+    let tolerance = MAX_BOUND_GAP * difference.noise.point_error() + beyond;
+    if near.distance - core_gap > tolerance {
+        let reason = Stalled::Distance { lower: core_gap, upper: near.distance, tolerance };
+        return Err(QueryError::NotConverged { reason });
+    }
+    Ok((near, plane))
+}
+
 /// Builds the answer from a search result about the cores: the radii lower both bounds. The answer is built once, in the
 /// return slot.
 ///
@@ -87,16 +123,8 @@ fn distance_of_search(
 ) -> Result<Distance, QueryError> {
     let bodies = difference.bodies;
     let noise = difference.noise.point_error();
-    let near = found.near_points(difference);
-    let plane = found.separating_plane(difference);
-    let beyond = plane.map_or(0.0, |plane| plane.excess);
-    let plane = plane.filter(|plane| plane.gap.gap > 0.0);
+    let (near, plane) = proofs_about_cores(difference, found)?;
     let core_gap = plane.map_or(0.0, |plane| plane.gap.gap);
-    let tolerance = MAX_BOUND_GAP * noise + beyond;
-    if near.distance - core_gap > tolerance {
-        let reason = Stalled::Distance { lower: core_gap, upper: near.distance, tolerance };
-        return Err(QueryError::NotConverged { reason });
-    }
     let cores = bodies.core_points(&near.pairs, &near.weights);
     let upper = bodies.distance_less_radii(near.distance);
     let steps = Steps { started_from, ..found.steps() };

@@ -24,6 +24,12 @@ pub trait PairBody: Body {
 
     #[doc(hidden)]
     fn distance(pair: &Pair<'_, Self>) -> Result<Distance<Self>, QueryError>;
+    /// Computes the bounds of [`Self::distance`] alone.
+    #[doc(hidden)]
+    #[inline]
+    fn distance_bounds(pair: &Pair<'_, Self>) -> Result<[f64; 2], QueryError> {
+        Ok(Self::distance(pair)?.bounds())
+    }
     /// Decides whether the bodies are closer than a length, and counts the work.
     #[doc(hidden)]
     fn within(
@@ -134,6 +140,27 @@ impl<B: PairBody> Pair<'_, B> {
     #[inline]
     pub fn distance(&self) -> Result<Distance<B>, QueryError> {
         B::distance(self)
+    }
+
+    /// Computes the bounds of the distance, `[lower, upper]`, as [`Self::distance`] does, without points, features and
+    /// proofs. For small and round bodies, these take longer than the search.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Self::distance`].
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::{ConvexPolyhedron, Pair, Pose};
+    /// let ball = ConvexPolyhedron::sphere(DVec3::ZERO, 0.5)?;
+    /// let there = Pose::from_translation(DVec3::new(3.0, 4.0, 0.0))?;
+    /// let pair = Pair::new(ball.at(Pose::IDENTITY), ball.at(there))?;
+    /// let [lower, upper] = pair.distance_bounds()?;
+    /// assert!(lower <= 4.0 && 4.0 <= upper && upper - lower < 1e-13);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[inline]
+    pub fn distance_bounds(&self) -> Result<[f64; 2], QueryError> {
+        B::distance_bounds(self)
     }
 
     /// Decides whether the bodies are closer than a length, in world units.

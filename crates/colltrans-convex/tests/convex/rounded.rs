@@ -108,6 +108,48 @@ fn parallel_capsules_are_as_far_apart_as_their_axes() {
     }
 }
 
+/// A point or ball is at a random place beside, over an edge of, or before a corner of a box, also at a distance of a few
+/// noises. The bounds alone are in closed form.
+#[test]
+fn bounds_of_points_and_boxes_hold_and_are_narrow() {
+    let mut random = Random::new(11);
+    let mut closer = 0;
+    for k in 0..cases(4000) {
+        let scale = 10.0_f64.powf(random.range(-3.0, 3.0));
+        let center = random.direction() * (random.range(0.0, 10.0) * scale);
+        let half = DVec3::from_array([(); 3].map(|()| random.range(0.01, 1.0) * scale));
+        let block = cuboid(center - half, center + half);
+        let rounded = if k % 3 == 0 { random.range(0.0, 0.5) * scale } else { 0.0 };
+        let block = block.rounded(rounded).expect("a body");
+        let radius = if k % 5 == 0 { 0.0 } else { 10.0_f64.powf(random.range(-3.0, 0.0)) * scale };
+        let apart = if k % 2 == 0 { 10.0_f64.powf(random.range(-17.0, 0.0)) } else { 1.0 } * scale;
+        // Coordinates within the box, on its surface, or outside of it.
+        let place = half.to_array().map(|side| match random.index(3) {
+            0 => random.range(-side, side),
+            1 => side,
+            _ => side + apart * random.range(0.0, 1.0),
+        });
+        let at_box =
+            Pose::new(random.rotation(), random.direction() * (3.0 * scale)).expect("a pose");
+        let at_ball = if k % 4 == 0 { at_box } else { Pose::IDENTITY };
+        let at_point = center + DVec3::from_array(place);
+        let middle = if k % 4 == 0 { at_point } else { at_box.transform_point(at_point) };
+        let ball = ConvexPolyhedron::from_points(&[middle]).and_then(|point| point.rounded(radius));
+        let ball = ball.expect("a body");
+        let placed = [ball.at(at_ball), block.at(at_box)];
+        for [moving, fixed] in [placed, [placed[1], placed[0]]] {
+            let pair = Pair::new(moving, fixed).expect("a pair");
+            let judge = RoundedJudge::new(pair);
+            let bounds = pair.distance_bounds().expect("bounds");
+            judge.check_bounds(bounds).expect("right bounds");
+            let width = (bounds[1] - bounds[0]) / judge.noise;
+            assert!(width <= 8.0, "{k}: {width} noises");
+            closer += u32::from(bounds[0] > 0.0 && bounds[0] < 100.0 * judge.noise);
+        }
+    }
+    assert!(closer > 20, "{closer}");
+}
+
 /// Bodies that slide along each other meet within a long interval. Their points are those at its end.
 #[test]
 fn contact_points_of_sliding_bodies_are_on_their_surfaces() {

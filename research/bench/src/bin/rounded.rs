@@ -2,7 +2,8 @@
 //! on the same settings. Of meshes, the table has the number of facets in place of that of vertices.
 //!
 //! Bodies have random radii, sides and orientations. Half of the casts are aimed at the fixed body's centre, the others
-//! beside it. Both libraries answer each setting, in turns. The figures are medians of the times and of the settings'
+//! beside it. Both libraries answer each setting, in turns. *Bounds* are distances without points and proofs, which is
+//! what parry returns. The figures are medians of the times and of the settings'
 //! ratios. Parry's answer is *wrong* if it differs from our bounds by more than a share of the distance.
 
 use std::process::ExitCode;
@@ -105,7 +106,8 @@ fn main() -> ExitCode {
         let columns = "moving:<8; fixed:<8; vertices:>8; cast ns:>8.0=cast/ours/median_ns;
             parry ns:>8.0=cast/parry/median_ns; ratio:>7.2=cast/ratio; wrong:>6=cast/wrong;
             distance ns:>11.0=distance/ours/median_ns; parry ns:>8.0=distance/parry/median_ns;
-            ratio:>7.2=distance/ratio; wrong:>6=distance/wrong";
+            ratio:>7.2=distance/ratio; wrong:>6=distance/wrong; bounds ns:>9.0=bounds/ours/median_ns;
+            ratio:>7.2=bounds/ratio";
         run.table(legend, columns);
         let hulls = run.sizes(&SIZES).into_iter().map(|n| [Kind::Sphere, Kind::Hull(n)]);
         let simple = [
@@ -194,7 +196,7 @@ fn measure_settings<'a, B: CastBody + PairBody + 'a>(
         impl Fn(&B::Contact) -> f64,
     >,
 ) -> Result<Value, Failure> {
-    let [mut casts, mut distances] = [Comparison::default(), Comparison::default()];
+    let [mut casts, mut distances, mut bounds] = [(); 3].map(|()| Comparison::default());
     let mut wrong = [0_u32; 2];
     for k in 0..count {
         let [moving, fixed] = shapes(k);
@@ -221,13 +223,23 @@ fn measure_settings<'a, B: CastBody + PairBody + 'a>(
             || setting.distance(moving, fixed),
         );
         let lower = mine?.lower;
+        let (mine, _) = bounds.compare_query(
+            clock,
+            || (ours.pair)(k, poses)?.distance_bounds(),
+            || setting.distance(moving, fixed),
+        );
+        mine?;
         wrong[1] += u32::from(!theirs.is_some_and(|theirs| is_near(theirs, lower)));
     }
     let figures = |compared: &Comparison, wrong: u32| {
         let ratio = compared.ratios.median();
         json!({ "ours": compared.ours, "parry": compared.theirs, "ratio": ratio, "wrong": wrong })
     };
-    Ok(json!({ "cast": figures(&casts, wrong[0]), "distance": figures(&distances, wrong[1]) }))
+    Ok(json!({
+        "cast": figures(&casts, wrong[0]),
+        "distance": figures(&distances, wrong[1]),
+        "bounds": figures(&bounds, wrong[1]),
+    }))
 }
 
 /// Checks whether an answer of parry is accurate to a share of the value.

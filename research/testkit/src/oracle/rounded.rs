@@ -72,14 +72,7 @@ impl<'a> RoundedJudge<'a> {
     /// [`Objection`] with the first statement that is false.
     pub fn check(&self, answer: &Distance) -> Result<f64, Objection> {
         let [lower, upper] = answer.bounds();
-        let truth = self.cores.to_f64() - self.radii.to_f64();
-        require!(0.0 <= lower && lower <= upper, "bounds {lower:e} and {upper:e}");
-        let square = &self.cores.square;
-        require!(
-            lower == 0.0 || self.square_between_cores(lower) <= *square,
-            "lower bound {lower:e} of {truth:e}"
-        );
-        require!(self.square_between_cores(upper) >= *square, "upper bound {upper:e} of {truth:e}");
+        self.check_bounds([lower, upper])?;
         let verified = |checked: Result<f64, colltrans::CertificateError>| {
             checked.map_err(|error| Objection(error.to_string()))
         };
@@ -92,6 +85,22 @@ impl<'a> RoundedJudge<'a> {
         }
         self.check_surface_points([answer.on_moving, answer.on_fixed], upper == 0.0, 4.0)?;
         Ok((upper - lower) / self.noise)
+    }
+
+    /// Checks bounds of the distance.
+    ///
+    /// # Errors
+    /// [`Objection`] with the first statement that is false.
+    pub fn check_bounds(&self, [lower, upper]: [f64; 2]) -> Result<(), Objection> {
+        let truth = self.cores.to_f64() - self.radii.to_f64();
+        require!(0.0 <= lower && lower <= upper, "bounds {lower:e} and {upper:e}");
+        let square = &self.cores.square;
+        require!(
+            lower == 0.0 || self.square_between_cores(lower) <= *square,
+            "lower bound {lower:e} of {truth:e}"
+        );
+        require!(self.square_between_cores(upper) >= *square, "upper bound {upper:e} of {truth:e}");
+        Ok(())
     }
 
     /// Checks that two points are on the surfaces of the bodies up to some noises, or in the bodies if `are_common`.
@@ -265,6 +274,7 @@ fn ask_all<'a>(
         judge.check(&distance).map_err(named("distance"))?,
         judge.check_depth(&depth, compares)?,
     ];
+    judge.check_bounds(pair.distance_bounds()?).map_err(named("bounds of the distance"))?;
     judge.check(&tracker.distance(&pair)?).map_err(named("tracked distance"))?;
     let apart = (judge.cores.to_f64() - judge.radii.to_f64()).max(0.0);
     for length in [0.0, apart, apart.next_up(), apart + 4.0 * judge.noise, length] {

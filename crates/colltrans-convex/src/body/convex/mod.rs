@@ -46,6 +46,8 @@ pub struct ConvexPolyhedron {
     vertices: Vec<DVec3>,
     input_index: Vec<InputVertex>,
     dimension: u8,
+    /// Whether the body is a box with sides along the axes of its frame, exactly.
+    is_upright_box: bool,
     hull_error: f64,
     /// Upper bound of the distance of an input point from the body. In contrast to the hull error it does not
     /// include uneven faces.
@@ -86,6 +88,12 @@ impl ConvexPolyhedron {
     /// for a point.
     pub fn dimension(&self) -> u8 {
         self.dimension
+    }
+
+    /// Checks whether the vertices are those of a box with sides along the axes of the body frame, exactly.
+    #[inline]
+    pub(crate) fn is_upright_box(&self) -> bool {
+        self.is_upright_box
     }
 
     /// Returns the number of faces: 2 for a flat polygon, 0 for a segment or a point.

@@ -17,10 +17,10 @@ impl Difference<'_> {
         bodies.is_rounded() && bodies.moving.dimension().max(bodies.fixed.dimension()) <= 1
     }
 
-    /// Returns a bound on how far cores that are points or segments reach beyond the lowest of their corners, and their
-    /// inputs.
+    /// Returns a bound on how far cores that are points, segments or upright boxes reach beyond the lowest of their
+    /// corners, and their inputs.
     #[inline]
-    fn excess_of_segments(&self) -> f64 {
+    pub(super) fn excess_of_segments(&self) -> f64 {
         let bodies = self.bodies;
         bodies.moving.segment_excess() + bodies.fixed.segment_excess() + bodies.input_excess()
     }

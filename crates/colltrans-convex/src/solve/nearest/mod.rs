@@ -15,6 +15,7 @@
 mod closed_form;
 mod depth;
 mod gjk;
+mod point_bounds;
 mod point_start;
 pub mod simplex;
 mod winding;

@@ -200,6 +200,7 @@ impl ConvexPolyhedron {
         let inertia = Inertia::new(&vertices, &topology, dimension);
         let support = SupportIndex::build(&vertices, &topology, &inertia);
         let mut body = Self {
+            is_upright_box: are_corners_of_box(&vertices),
             vertices,
             input_index: input.into_iter().map(InputVertex).collect(),
             dimension,
@@ -245,4 +246,11 @@ impl ConvexPolyhedron {
         };
         Self::from_hull(vertices, hull)
     }
+}
+
+/// Checks whether eight distinct points are the corners of a box with sides along the axes, exactly.
+fn are_corners_of_box(points: &[DVec3]) -> bool {
+    let (Some(first), 8) = (points.first(), points.len()) else { return false };
+    let [min, max] = points.iter().fold([*first; 2], |[min, max], v| [min.min(*v), max.max(*v)]);
+    min.cmplt(max).all() && points.iter().all(|v| (v.cmpeq(min) | v.cmpeq(max)).all())
 }

@@ -70,6 +70,7 @@
 //! | [`Cast::intersects`] | whether the bodies intersect in their current poses | [`Intersection`] |
 //! | [`Cast::verify`] | check of a proof | the proven gap |
 //! | [`Pair::distance`] | distance and nearest points | [`Distance`] |
+//! | [`Pair::distance_bounds`] | bounds of the distance alone | `[f64; 2]` |
 //! | [`Pair::within`] | whether the distance is less than a length | [`Within`] |
 //! | [`Pair::depth`] | shortest translation that separates the bodies | [`Depth`] |
 //! | [`motion::MotionCast::first_contact`] | time of the first contact of rotating bodies | [`motion::MotionOutcome`] |

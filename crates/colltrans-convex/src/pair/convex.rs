@@ -25,13 +25,12 @@ impl PairBody for ConvexPolyhedron {
     fn distance_bounds(pair: &Pair<'_>) -> Result<[f64; 2], QueryError> {
         let bodies = &pair.bodies;
         let difference = Difference::new(bodies);
-        let [core_gap, between_cores] = match difference.point_bounds() {
-            Some(bounds) => bounds,
-            None => {
-                let found = nearest_points(&difference, &NearestPairs::default(), None);
-                let (near, plane) = proofs_about_cores(&difference, &found)?;
-                [plane.map_or(0.0, |plane| plane.gap.gap), near.distance]
-            }
+        let [core_gap, between_cores] = if let Some(bounds) = difference.point_bounds() {
+            bounds
+        } else {
+            let found = nearest_points(&difference, &NearestPairs::default(), None);
+            let (near, plane) = proofs_about_cores(&difference, &found)?;
+            [plane.map_or(0.0, |plane| plane.gap.gap), near.distance]
         };
         Ok([bodies.less_radii(core_gap).max(0.0), bodies.distance_less_radii(between_cores)])
     }

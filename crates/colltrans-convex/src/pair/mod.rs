@@ -142,8 +142,11 @@ impl<B: PairBody> Pair<'_, B> {
         B::distance(self)
     }
 
-    /// Computes the bounds of the distance, `[lower, upper]`, as [`Self::distance`] does, without points, features and
-    /// proofs. For small and round bodies, these take longer than the search.
+    /// Computes bounds of the distance, `[lower, upper]`, without points, features and proofs, which take longer than the
+    /// search for small and round bodies.
+    ///
+    /// The bounds hold as exactly as those of [`Self::distance`]. Both may differ by a few noises, because the bounds of
+    /// a point or sphere and a point, a sphere or a box along the axes of its frame are in closed form here.
     ///
     /// # Errors
     /// Returns the errors of [`Self::distance`].

@@ -107,7 +107,7 @@ fn main() -> ExitCode {
             parry ns:>8.0=cast/parry/median_ns; ratio:>7.2=cast/ratio; wrong:>6=cast/wrong;
             distance ns:>11.0=distance/ours/median_ns; parry ns:>8.0=distance/parry/median_ns;
             ratio:>7.2=distance/ratio; wrong:>6=distance/wrong; bounds ns:>9.0=bounds/ours/median_ns;
-            ratio:>7.2=bounds/ratio";
+            ratio:>7.2=bounds/ratio; wrong:>6=bounds/wrong";
         run.table(legend, columns);
         let hulls = run.sizes(&SIZES).into_iter().map(|n| [Kind::Sphere, Kind::Hull(n)]);
         let simple = [
@@ -197,7 +197,7 @@ fn measure_settings<'a, B: CastBody + PairBody + 'a>(
     >,
 ) -> Result<Value, Failure> {
     let [mut casts, mut distances, mut bounds] = [(); 3].map(|()| Comparison::default());
-    let mut wrong = [0_u32; 2];
+    let mut wrong = [0_u32; 3];
     for k in 0..count {
         let [moving, fixed] = shapes(k);
         let from = random.direction() * random.range(3.0, 6.0);
@@ -222,14 +222,15 @@ fn measure_settings<'a, B: CastBody + PairBody + 'a>(
             || (ours.pair)(k, poses)?.distance(),
             || setting.distance(moving, fixed),
         );
-        let lower = mine?.lower;
-        let (mine, _) = bounds.compare_query(
+        let is_wrong =
+            |theirs: Option<f64>, ours| !theirs.is_some_and(|theirs| is_near(theirs, ours));
+        wrong[1] += u32::from(is_wrong(theirs, mine?.lower));
+        let (mine, theirs) = bounds.compare_query(
             clock,
             || (ours.pair)(k, poses)?.distance_bounds(),
             || setting.distance(moving, fixed),
         );
-        mine?;
-        wrong[1] += u32::from(!theirs.is_some_and(|theirs| is_near(theirs, lower)));
+        wrong[2] += u32::from(is_wrong(theirs, mine?[0]));
     }
     let figures = |compared: &Comparison, wrong: u32| {
         let ratio = compared.ratios.median();
@@ -238,7 +239,7 @@ fn measure_settings<'a, B: CastBody + PairBody + 'a>(
     Ok(json!({
         "cast": figures(&casts, wrong[0]),
         "distance": figures(&distances, wrong[1]),
-        "bounds": figures(&bounds, wrong[1]),
+        "bounds": figures(&bounds, wrong[2]),
     }))
 }
 

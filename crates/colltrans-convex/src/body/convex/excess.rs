@@ -152,9 +152,10 @@ impl ConvexPolyhedron {
         2.0 * noise::GAIN * self.inertia.reach
     }
 
-    /// Returns the excess of a point, or of a segment beyond the end at which a rounded product is largest.
+    /// Returns the excess of a point, of a segment beyond the end at which a rounded product is largest, or of an upright
+    /// box beyond the corner that the signs of a rounded normal select.
     #[inline]
-    pub(crate) fn segment_excess(&self) -> f64 {
+    pub(crate) fn corner_excess(&self) -> f64 {
         if self.dimension == 0 { 0.0 } else { self.scan_excess() }
     }
 

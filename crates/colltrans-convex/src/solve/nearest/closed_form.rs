@@ -20,9 +20,9 @@ impl Difference<'_> {
     /// Returns a bound on how far cores that are points, segments or upright boxes reach beyond the lowest of their
     /// corners, and their inputs.
     #[inline]
-    pub(super) fn excess_of_segments(&self) -> f64 {
+    pub(super) fn corner_excess(&self) -> f64 {
         let bodies = self.bodies;
-        bodies.moving.segment_excess() + bodies.fixed.segment_excess() + bodies.input_excess()
+        bodies.moving.corner_excess() + bodies.fixed.corner_excess() + bodies.input_excess()
     }
 }
 
@@ -55,7 +55,7 @@ pub(super) fn nearest_of_segments(difference: &Difference, goal: &Goal) -> Optio
             }
         }
     }
-    found.excess = Some(difference.excess_of_segments());
+    found.excess = Some(difference.corner_excess());
     goal.is_reached(&found).then_some(found)
 }
 

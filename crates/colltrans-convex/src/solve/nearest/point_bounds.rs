@@ -8,9 +8,9 @@
 //! - *Upper*: `|R c - x|`. Clamping does not round, so `c` is a point of the box.
 //! - *Lower*: the height of the box along `n = R (c - y)`, scaled to length 1, above `x`. A coordinate of `c - y` is
 //!   exactly 0 if `c` and `y` agree in it, so `n` is as perpendicular to faces and edges of the box as the columns of
-//!   its matrix. The lowest corner is chosen by the signs of `R^T n`. A wrong sign of a coordinate whose rounding error
-//!   is at most `3 u` raises the corner by at most `6 sqrt(3) u` reaches of the box, which is below
-//!   [`segment_excess`](crate::body::ConvexPolyhedron).
+//!   its matrix. The lowest corner is chosen by the signs of `R^T n`. Wrong signs, each of a coordinate below `3 u`, raise
+//!   the corner by at most `3 u` times the sum of the sides. This is at most `6 sqrt(3) u` reaches of the box, less than
+//!   [`ConvexPolyhedron::corner_excess`].
 //!
 //! Both carry the margins of other points and planes (`docs/theory/rounding.md`).
 
@@ -18,7 +18,7 @@ use glam::{DMat3, DVec3};
 
 use super::Difference;
 use super::gjk::unit_vector;
-use crate::body::ConvexPolyhedron;
+use crate::body::{Aabb, ConvexPolyhedron};
 use crate::setting::VertexPair;
 
 impl Difference<'_> {
@@ -39,7 +39,7 @@ impl Difference<'_> {
             }
             _ => return None,
         };
-        let error = self.noise.lower_bound_margin() + self.excess_of_segments();
+        let error = self.noise.lower_bound_margin() + self.corner_excess();
         let proven_lower = (lower - error).next_down();
         let proven_upper = (upper + self.noise.mean_length_margin()).next_up();
         let is_sharp = upper - lower <= self.noise.point_error();
@@ -51,13 +51,11 @@ impl Difference<'_> {
 /// box.
 #[inline]
 fn from_box(upright: &ConvexPolyhedron, matrix: &DMat3, x: DVec3) -> Option<[f64; 2]> {
-    let vertices = upright.vertices();
-    let [min, max] =
-        vertices.iter().fold([vertices[0]; 2], |[min, max], v| [min.min(*v), max.max(*v)]);
+    let Aabb { low, high } = Aabb::from_points(upright.vertices().iter().copied());
     let y = matrix.transpose() * x;
-    let c = y.clamp(min, max);
+    let c = y.clamp(low, high);
     let normal = unit_vector(*matrix * (c - y))?;
     let in_box = matrix.transpose() * normal;
-    let lowest = DVec3::select(in_box.cmpgt(DVec3::ZERO), min, max);
+    let lowest = DVec3::select(in_box.cmpgt(DVec3::ZERO), low, high);
     Some([normal.dot(*matrix * lowest - x), (*matrix * c - x).length()])
 }

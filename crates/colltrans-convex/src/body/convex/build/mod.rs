@@ -11,7 +11,7 @@ use glam::DVec3;
 use super::ConvexPolyhedron;
 use super::support::SupportIndex;
 use crate::body::error::BuildError;
-use crate::body::{Inertia, InputVertex};
+use crate::body::{Aabb, Inertia, InputVertex};
 #[cfg(any(test, feature = "json"))]
 use colltrans_kernel::topology::Topology;
 use hull::IndexedHull;
@@ -248,9 +248,11 @@ impl ConvexPolyhedron {
     }
 }
 
-/// Checks whether eight distinct points are the corners of a box with sides along the axes, exactly.
+/// Checks whether distinct points are the corners of a box with sides along the axes, exactly.
 fn are_corners_of_box(points: &[DVec3]) -> bool {
-    let (Some(first), 8) = (points.first(), points.len()) else { return false };
-    let [min, max] = points.iter().fold([*first; 2], |[min, max], v| [min.min(*v), max.max(*v)]);
-    min.cmplt(max).all() && points.iter().all(|v| (v.cmpeq(min) | v.cmpeq(max)).all())
+    if points.len() != 8 {
+        return false;
+    }
+    let Aabb { low, high } = Aabb::from_points(points.iter().copied());
+    low.cmplt(high).all() && points.iter().all(|v| (v.cmpeq(low) | v.cmpeq(high)).all())
 }

@@ -279,11 +279,13 @@ def test_a_body_without_some_input_points_is_accepted() -> None:
         assert refused(file), wrong
 
 
-def test_a_stated_rounding_may_include_hull_errors() -> None:
+def test_a_stated_rounding_may_include_the_input_excess() -> None:
     file = proof("contacts")
     file["statement"]["contacts"]["first"]["rounding"] = 1e-9
     assert refused(file)
     file["bodies"][0]["convex"]["hull_error"] = 1e-9
+    assert refused(file)
+    file["bodies"][0]["convex"]["input_excess"] = 1e-9
     assert not refused(file)
 
 

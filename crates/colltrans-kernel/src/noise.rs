@@ -142,8 +142,8 @@ impl Noise {
         margin.max(0.0) + WIDENING_TOUCHES * self.touching_distance()
     }
 
-    /// Returns the largest half-side of a widening rectangle. Its margin is at most one noise and `excess`, the
-    /// distance of input points from the bodies, because shadows that are farther apart are separated.
+    /// Returns the largest half-side of a widening rectangle. Its margin is at most one noise and `excess`, by which the
+    /// bodies and their inputs reach beyond support points, because shadows that are farther apart are separated.
     #[inline]
     pub fn max_widening_half_side(self, excess: f64) -> f64 {
         self.widening_half_side(self.0 + excess)

@@ -114,10 +114,10 @@ _SLIGHT = 8 + Fraction(1, 64)
 #: exceeds them, divided by ``n.d``.
 _MISS, _RAISE = Fraction(13, 4), Fraction(11, 4)
 #: Number of noises by which witness points may miss each other if no upper bound is claimed.
-_MISS_WIDENED = 46
+_MISS_WIDENED = 67
 #: The largest ``rounding`` of a contact in noises, and an allowance for a normal across the
 #: direction.
-_MOST_STATED = (63, 175)
+_MOST_STATED = (63, 259)
 #: Maximum magnitude of a coordinate, displacement or gap.
 MOST = 2**200
 #: Range of magnitudes of nonzero coordinates.
@@ -594,8 +594,11 @@ def is_thin(points: list[Vector], faces: list[list[int]]) -> bool:
     return False
 
 
-def convex_data(points: list[Vector], content: Any) -> tuple[list[list[int]], Fraction]:
-    """Returns the faces and the hull error of a convex body, after a check against its vertices."""
+def convex_data(points: list[Vector], content: Any) -> tuple[list[list[int]], Fraction, Fraction]:
+    """Returns the faces, the hull error and the input excess of a convex body.
+
+    All are checked against its vertices.
+    """
     inputs = [whole(k, 2**32) for k in listed(content["input_indices"])]
     # After shrinking or growing, several vertices may come from one input vertex.
     if len(inputs) != len(points):
@@ -630,7 +633,7 @@ def convex_data(points: list[Vector], content: Any) -> tuple[list[list[int]], Fr
             is_off = (above > 0 or k in face) and above * above > room * room * square
             if is_off and not is_thin(points, faces):
                 raise RefusedError(f"vertex {k} is not where the faces around it are")
-    return faces, error
+    return faces, error, excess
 
 
 @dataclass(frozen=True)
@@ -646,6 +649,8 @@ class Shape:
     faces: list[list[int]] = field(default_factory=list)
     #: Upper bound of the distance of the input of a convex body beyond its vertices.
     hull_error: Fraction = Fraction()
+    #: The part of it by which input points lie outside of the body.
+    input_excess: Fraction = Fraction()
     radius: Fraction = Fraction()
 
     @classmethod
@@ -655,8 +660,8 @@ class Shape:
             names = "vertices faces input_indices hull_error"
             content = fields(content, names, "input_excess radius")
             points = [place(v) for v in listed(content["vertices"])]
-            faces, hull_error = convex_data(points, content)
-            found = cls(points, faces=faces, hull_error=hull_error)
+            faces, error, excess = convex_data(points, content)
+            found = cls(points, faces=faces, hull_error=error, input_excess=excess)
         else:
             if kind == "rounded":
                 content = fields(content, "pieces radius")
@@ -943,17 +948,17 @@ def never_near(min_gap: Fraction) -> str:
     return f"are never as near as {float(min_gap)!r}" if min_gap else "never meet"
 
 
-def stated(d: Vector, proof: Any, noise: Fraction, min_gap: Fraction, hull_error: Fraction) -> None:
+def stated(d: Vector, proof: Any, noise: Fraction, min_gap: Fraction, excess: Fraction) -> None:
     """Checks that the stated rounding of a certificate is within limits; it proves nothing.
 
-    ``hull_error`` bounds how far the inputs of both bodies reach beyond their vertices.
+    ``excess`` bounds how far input points of both bodies lie outside of them.
     """
     normal, rounding = vector(proof["normal"]), number(proof["rounding"])
     sideways = cross(normal, d)
     share = root_above(dot(sideways, sideways) / dot(d, d))
     most, across = _MOST_STATED
     slight = 2 * min_gap if min_gap <= _SLIGHT * noise else Fraction()
-    limit = (most + across * share) * noise + slight + (2 + 6 * share) * hull_error
+    limit = (most + across * share) * noise + slight + (2 + 6 * share) * excess
     if not 0 <= rounding * dot(normal, d) <= limit:
         raise RefusedError(f"rounding does not explain {float(rounding)!r}")
 
@@ -988,9 +993,9 @@ def contact(
     report.holds.append(f"{which}: the bodies {meet} at no translation below {float(lower)!r}")
 
     noise = _NOISE * (size(moving, fixed) + min_gap)
-    # Poses stretch the errors by at most four deviations from a rotation.
-    hull_error = (moving.shape.hull_error + fixed.shape.hull_error) * (1 + 4 * _TURN)
-    stated(d, proof, noise, min_gap, hull_error)
+    # Poses stretch the excess by at most four deviations from a rotation.
+    excess = (moving.shape.input_excess + fixed.shape.input_excess) * (1 + 4 * _TURN)
+    stated(d, proof, noise, min_gap, excess)
     weights = listed(proof["weights"], 3)
     ends = ends_of(moving, fixed, listed(proof["pairs"], 3))
     corners = [minus(q, p) for p, q in ends]
@@ -999,7 +1004,7 @@ def contact(
     off = minus(point, scaled(d, estimate))
     miss = dot(off, off)
     if proof["upper"] is None:
-        if not min_gap and miss > (_MISS_WIDENED * noise + Fraction(4, 3) * hull_error) ** 2:
+        if not min_gap and miss > (_MISS_WIDENED * noise + Fraction(4, 3) * excess) ** 2:
             raise RefusedError(f"{which}: the witness points miss each other")
         report.unchecked.append(f"{which}: no upper bound is claimed")
         return

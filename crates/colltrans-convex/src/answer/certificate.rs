@@ -404,7 +404,7 @@ impl Certificate {
         // Certificates of widened bodies have no upper bound, and their witness points may differ by the
         // widening.
         let tolerance = if self.upper == f64::INFINITY {
-            noise.widened_residual_tolerance(setting.input_excess())
+            noise.widened_residual_tolerance(max_excess(setting, noise))
         } else {
             noise.residual_tolerance()
         };
@@ -462,15 +462,20 @@ fn reduced_by_gap(distance: f64, normal: DVec3, min_gap: f64) -> f64 {
     (distance - (min_gap * square.sqrt().next_up()).next_up()).next_down()
 }
 
+/// Returns a bound on how far the bodies and their inputs reach beyond support points: the tolerance of coplanar
+/// vertices, and [`TwoBodies::input_excess`](crate::setting::TwoBodies::input_excess).
+fn max_excess(setting: &Setting, noise: Noise) -> f64 {
+    noise.max_excess() + setting.input_excess()
+}
+
 /// Returns the largest rounding that a certificate may state. The field proves nothing.
 ///
-/// The limit is twice the rounding that a search states. It assumes that the bodies reach beyond their support points
-/// by at most the tolerance of coplanar vertices, and that their inputs reach farther by at most
-/// [`TwoBodies::input_excess`](crate::setting::TwoBodies::input_excess). A search with a gap states this excess twice.
+/// The limit is twice the rounding that a search states. A search with a gap states the excess beyond support points
+/// twice.
 fn max_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
     let margins = noise.upper_bound_margin() + noise.lower_bound_margin();
-    let excess = setting.input_excess();
-    let rounding = (margins + noise.max_excess() + excess) / normal.dot(setting.direction);
+    let excess = max_excess(setting, noise);
+    let rounding = (margins + excess) / normal.dot(setting.direction);
     2.0 * (gap_rounding(setting, normal, noise, noise.max_widening_half_side(excess)) + rounding)
 }
 

@@ -31,8 +31,8 @@ const MARGIN_ROUNDINGS: f64 = 5.0;
 const RESIDUAL_ROUNDINGS: f64 = 2.0;
 
 /// Maximum residual of the witness points of a grazing contact in noises. The library widens such bodies by up
-/// to 33 noises and their hull errors along each lateral axis.
-const GRAZING_RESIDUAL_ROUNDINGS: f64 = 48.0;
+/// to 49 noises and their hull errors along each lateral axis.
+const GRAZING_RESIDUAL_ROUNDINGS: f64 = 69.0;
 
 /// Upper bound on the length of the library's widening in multiples of its longer half-side.
 const WIDENING_CORNER: f64 = 1.3;

@@ -4,7 +4,7 @@
 //! `p` is a pair of points, one of each body, that probably touch; only their section levels matter. Sources:
 //! 1. [`outline_contact`], if both bodies have outlines.
 //! 2. A large face of one body and the vertex of the other one opposite it, if their plane proves a higher lower bound
-//!    than the first normal.
+//!    than the first normal. If the line misses the face of a box, the points are on the face and near its boundary.
 //! 3. Support points of `M`, each along a slope that should move its shadow to the line (a quasi-Newton method on the
 //!    concave `f` of [`portal`](super::portal), whose gradient is the shadow).
 //!
@@ -13,10 +13,11 @@
 use glam::{DMat2, DVec2, DVec3};
 
 use super::cta::LastSolution;
-use super::observe::Observer;
+use super::observe::{Observer, Support};
 use super::portal::{Context, NormalGuess, outline_contact};
-use crate::body::ConvexPolyhedron;
+use crate::body::{ConvexPolyhedron, LargeFace};
 use crate::setting::minkowski::{MinkowskiDifference, ShadowPoint};
+use crate::setting::{TwoBodies, VertexPair};
 
 /// Maximum number of support points of one guess (measured).
 const MAX_SUPPORTS: usize = 8;
@@ -40,19 +41,26 @@ const BETWEEN_SHARE: f64 = 0.05;
 /// Minimum cosine between the normal of a large face and the direction at which the face is tried.
 const MIN_FACE_COSINE: f64 = 0.05;
 
-/// Maximum number of vertices of a body that [`inside_box`] treats.
+/// Minimum cosine between the normal of another face of a box and the direction at which this face is tried (measured).
+const MIN_OTHER_COSINE: f64 = 0.4;
+
+/// Maximum number of vertices of a box.
 const MAX_BOX_VERTICES: usize = 32;
 
-/// Share of the way to the centre by which [`inside_box`] moves a point.
-const INSIDE_SHARE: f64 = 0.15;
+/// Share of the way to the centre of a box by which a point of contact is moved. Sections through its boundary may miss
+/// those of the other body.
+const INSIDE_SHARE: f64 = 0.02;
+
+/// As [`INSIDE_SHARE`], if an edge probably touches instead of the face. Cells are large, so that a shift returns to the
+/// contact (measured).
+const MISSED_SHARE: f64 = 0.3;
 
 /// Least `delta` on bodies with rims, as a multiple of the radius over the number of vertices: about a side of a rim.
 const RIM_EDGES: f64 = 8.0;
 
 /// Guesses the solution. `None` if the bodies seem to miss each other.
 pub(super) fn guessed_solution<O: Observer>(context: &mut Context<O>) -> Option<LastSolution> {
-    let guess = NormalGuess::with_curvatures(&context.difference);
-    solution_near(context, guess)
+    solution_near(context, NormalGuess::with_curvatures)
 }
 
 /// Guesses the solution from the normal of the contact against the direction (frame of the moving body). `None` if
@@ -62,19 +70,25 @@ pub(super) fn opposite_solution<O: Observer>(
     normal: DVec3,
 ) -> Option<LastSolution> {
     let other = context.difference.moving_normal_to_shadow(normal);
-    let guess = NormalGuess::opposite_with_curvatures(&context.difference, other);
-    solution_near(context, guess)
+    solution_near(context, |difference| NormalGuess::opposite_with_curvatures(difference, other))
 }
 
-/// Guesses the solution from a guess of its normal.
+/// Guesses the solution from a face of two boxes, or from a guess of its normal.
 fn solution_near<O: Observer>(
     context: &mut Context<O>,
-    (NormalGuess { normal: first, .. }, curvatures): (NormalGuess, [DMat2; 2]),
+    guess: impl FnOnce(&MinkowskiDifference) -> (NormalGuess, [DMat2; 2]),
 ) -> Option<LastSolution> {
+    let setting = context.difference.setting;
+    if is_box(setting.moving) && is_box(setting.fixed) {
+        let found = solution_on_large_face(context, f64::NEG_INFINITY);
+        if found.is_some() {
+            return found;
+        }
+    }
+    let (NormalGuess { normal: first, .. }, curvatures) = guess(&context.difference);
     if first.z <= 0.0 {
         return None;
     }
-    let setting = context.difference.setting;
     if setting.moving.may_have_rims() || setting.fixed.may_have_rims() {
         let found = solution_on_outlines(&context.difference, first.truncate());
         if found.is_some() {
@@ -83,7 +97,7 @@ fn solution_near<O: Observer>(
     }
     let point = context.support(first, None);
     if setting.moving.has_large_faces() || setting.fixed.has_large_faces() {
-        let found = solution_on_large_face(context, &point, first);
+        let found = solution_on_large_face(context, first.dot(point.coordinates));
         if found.is_some() {
             return found;
         }
@@ -113,50 +127,164 @@ fn solution_on_outlines(difference: &MinkowskiDifference, near: DVec2) -> Option
     })
 }
 
-/// Returns the contact of a large face with the vertex of the other body that is nearest to its plane. `None` if
-/// neither body has a face whose plane is a higher lower bound than `point` along `first`.
-fn solution_on_large_face<O: Observer>(
-    context: &mut Context<O>,
-    point: &ShadowPoint,
-    first: DVec3,
-) -> Option<LastSolution> {
-    let setting = context.difference.setting;
-    let mut highest = first.dot(point.coordinates);
-    let mut found = None;
-    for body in 0..2 {
+/// Contact of a large face with the vertex of the other body that is nearest to its plane.
+struct FaceContact<'a> {
+    /// Body of the face.
+    body: usize,
+    face: &'a LargeFace,
+    /// Normal `(a, 1)` in the shadow frame.
+    normal: DVec3,
+    /// A vertex of the face, and the vertex of the other body.
+    pair: VertexPair,
+    /// Height at which the vertex reaches the plane: a lower bound.
+    height: f64,
+}
+
+impl<'a> FaceContact<'a> {
+    /// Finds the vertex for a face of a body. `None` if the face does not face the other body.
+    fn new<O: Observer>(
+        context: &mut Context<O>,
+        body: usize,
+        face: &'a LargeFace,
+    ) -> Option<Self> {
         let difference = &context.difference;
+        let TwoBodies { moving, fixed, .. } = difference.setting.bodies;
         let normal = if body == 0 {
-            let face = setting.moving.large_face_toward(difference.to_moving_frame(DVec3::Z));
-            face.map(|face| difference.moving_normal_to_shadow(face.normal))
+            difference.moving_normal_to_shadow(face.normal)
         } else {
-            let face = setting.fixed.large_face_toward(-difference.to_fixed_frame(DVec3::Z));
-            face.map(|face| -difference.fixed_normal_to_shadow(face.normal))
+            -difference.fixed_normal_to_shadow(face.normal)
         };
-        let Some(normal) = normal.filter(|normal| normal.z > MIN_FACE_COSINE) else { continue };
+        if normal.z <= MIN_FACE_COSINE {
+            return None;
+        }
         let normal = normal / normal.z;
-        let support = context.support(normal, Some(point.pair));
-        let height = normal.dot(support.coordinates);
-        if height > highest {
-            highest = height;
-            found = Some((body, normal, support));
+        let own = face.corners[0];
+        let farthest = |other: &ConvexPolyhedron, direction: DVec3| {
+            other.support_from_guess(direction, other.support_guess(direction))
+        };
+        let pair = if body == 0 {
+            VertexPair::from_indices(own, farthest(fixed, -difference.to_fixed_frame(normal)))
+        } else {
+            VertexPair::from_indices(farthest(moving, difference.to_moving_frame(normal)), own)
+        };
+        let point = difference.vertex_point(pair);
+        context.watch.support(|| Support::from_point(normal, &point));
+        let height = normal.dot(point.coordinates);
+        Some(Self { body, face, normal, pair, height })
+    }
+
+    /// Replaces `highest` by this contact if this one is higher.
+    fn keep_highest(self, highest: &mut Option<Self>) {
+        if highest.as_ref().is_none_or(|other| self.height > other.height) {
+            *highest = Some(self);
         }
     }
-    let (body, normal, support) = found?;
-    let difference = &context.difference;
-    let [p, q] = difference.points_on_line(support.pair, body, highest);
-    Some(LastSolution {
-        touching: [inside_box(setting.moving, p), inside_box(setting.fixed, q)],
-        half_side: mean_edge(difference),
-        normal: difference.to_moving_frame(normal),
-        pair: Some(support.pair),
+}
+
+/// Returns the contact of a large face with the vertex of the other body that is nearest to its plane. `None` if
+/// neither body has a face whose plane is a higher lower bound than `least`.
+///
+/// Tries the face of each body that is most perpendicular to the line. If the line misses the higher one, and this is a
+/// face of a box, tries the other faces of boxes.
+fn solution_on_large_face<O: Observer>(
+    context: &mut Context<O>,
+    least: f64,
+) -> Option<LastSolution> {
+    let TwoBodies { moving, fixed, .. } = context.difference.setting.bodies;
+    let down = [
+        context.difference.to_moving_frame(DVec3::Z),
+        -context.difference.to_fixed_frame(DVec3::Z),
+    ];
+    let nearest = [moving.large_face_toward(down[0]), fixed.large_face_toward(down[1])];
+    let mut highest = None;
+    for (body, face) in nearest.into_iter().enumerate() {
+        if let Some(contact) = face.and_then(|face| FaceContact::new(context, body, face)) {
+            contact.keep_highest(&mut highest);
+        }
+    }
+    let first_height = highest.as_ref()?.height;
+    let mut points = highest.as_ref()?.points_of_contact(&context.difference);
+    if points.misses_face {
+        for (body, of_body) in [moving, fixed].into_iter().enumerate() {
+            let faces = if is_box(of_body) { of_body.large_faces() } else { &[] };
+            for face in faces {
+                if face.normal.dot(down[body]) > MIN_OTHER_COSINE
+                    && nearest[body].is_none_or(|nearest| nearest.face != face.face)
+                    && let Some(contact) = FaceContact::new(context, body, face)
+                {
+                    contact.keep_highest(&mut highest);
+                }
+            }
+        }
+        let highest = highest.as_ref()?;
+        if highest.height > first_height {
+            points = highest.points_of_contact(&context.difference);
+        }
+    }
+    let FaceContact { normal, pair, height, .. } = highest?;
+    let share = if points.misses_face { MISSED_SHARE } else { INSIDE_SHARE };
+    let inside = |body: &ConvexPolyhedron, point: DVec3| {
+        if is_box(body) { point.lerp(body.inertia().center, share) } else { point }
+    };
+    let [p, q] = points.touching;
+    (height > least).then(|| LastSolution {
+        touching: [inside(moving, p), inside(fixed, q)],
+        half_side: mean_edge(&context.difference),
+        normal: context.difference.to_moving_frame(normal),
+        pair: Some(pair),
     })
 }
 
-/// Moves a point towards the centre of a body with few vertices. Sections through its boundary may miss those of the
-/// other body, if an edge touches instead of the face. Its cells are large, so that a shift returns to the contact.
-fn inside_box(body: &ConvexPolyhedron, point: DVec3) -> DVec3 {
-    let is_box = body.vertices().len() <= MAX_BOX_VERTICES;
-    if is_box { point.lerp(body.inertia().center, INSIDE_SHARE) } else { point }
+/// Points of contact of a face, in the frames of P and of Q.
+struct FaceContactPoints {
+    touching: [DVec3; 2],
+    /// Whether the face is one of a box, and the line misses it. Then the points are moved onto the face.
+    misses_face: bool,
+}
+
+impl FaceContact<'_> {
+    /// Returns the points of contact on the line, moved onto the face if this is one of a box.
+    fn points_of_contact(&self, difference: &MinkowskiDifference) -> FaceContactPoints {
+        let TwoBodies { moving, fixed, .. } = difference.setting.bodies;
+        let mut touching = difference.points_on_line(self.pair, self.body, self.height);
+        let of_face = if self.body == 0 { moving } else { fixed };
+        if !is_box(of_face) {
+            return FaceContactPoints { touching, misses_face: false };
+        }
+        let way = way_onto_face(of_face, self.face, touching[self.body]);
+        let misses_face = way != DVec3::ZERO;
+        if misses_face {
+            touching[self.body] += way;
+            touching[1 - self.body] += if self.body == 0 {
+                difference.to_fixed_frame(difference.moving_normal_to_shadow(way))
+            } else {
+                difference.to_moving_frame(difference.fixed_normal_to_shadow(way))
+            };
+        }
+        FaceContactPoints { touching, misses_face }
+    }
+}
+
+/// Checks whether a body has few vertices and large faces.
+fn is_box(body: &ConvexPolyhedron) -> bool {
+    body.vertices().len() <= MAX_BOX_VERTICES && body.has_large_faces()
+}
+
+/// Returns the way from a point in the plane of a face to the face: across each side beyond which the point lies, one
+/// after the other.
+fn way_onto_face(body: &ConvexPolyhedron, face: &LargeFace, point: DVec3) -> DVec3 {
+    let mut corners = body.face_vertices(face.face).map(|v| body.vertices()[v as usize]);
+    let Some(first) = corners.next() else { return DVec3::ZERO };
+    let (mut from, mut moved) = (first, point);
+    for to in corners.chain(std::iter::once(first)) {
+        let outward = (to - from).cross(face.normal);
+        let excess = outward.dot(moved - from);
+        if excess > 0.0 {
+            moved -= outward * (excess / outward.length_squared());
+        }
+        from = to;
+    }
+    moved - point
 }
 
 /// Search for support points of `M` near the line.

@@ -28,7 +28,7 @@ const CASTS: &[(&str, u64)] = &[
     ("rim", 0x8cbb_6ebb_9e84_7f83),
     ("identical", 0x16e0_6620_9f26_ba9e),
     ("peg", 0xb364_987a_be12_30be),
-    ("needle-plate", 0x329d_c3e9_78bb_257c),
+    ("needle-plate", 0x63be_9f5a_35fb_121c),
     ("size-ratio", 0xb10a_ed40_20a7_9986),
     ("offset", 0xd92d_d640_f6e9_23c1),
     ("far", 0x85e8_41e2_f1e9_f5da),
@@ -37,9 +37,9 @@ const CASTS: &[(&str, u64)] = &[
     ("nearly", 0xf363_c08c_afa5_7647),
     ("shallow", 0xa3d3_169d_e996_e20a),
     ("thin", 0xd9b3_778f_aea5_5955),
-    ("cylinders", 0x8a26_bdce_f48d_ee74),
+    ("cylinders", 0x6463_6d01_d964_0ecd),
     ("magnitude", 0x3970_db53_4a72_2b5a),
-    ("narrow-rings", 0xb835_6998_df3c_f4fb),
+    ("narrow-rings", 0x8561_b207_136f_c115),
 ];
 
 fn hash_contact(hash: &mut Hash, contact: &Contact, cast: &Cast) {

@@ -7,7 +7,7 @@ use colltrans_convex::{
 };
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{
-    Mesh, cone, even_rings, half_sphere, prism, random_hull, ring_sphere, superellipsoid,
+    Mesh, cone, cuboid, even_rings, half_sphere, prism, random_hull, ring_sphere, superellipsoid,
 };
 use glam::{DQuat, DVec3};
 
@@ -121,6 +121,40 @@ fn guessed_solution_saves_planar_problems_but_no_proof() {
                 assert!(pivots < 3.0, "{name} {n}: {pivots} portals");
             }
         }
+    }
+}
+
+#[test]
+fn faces_give_a_guess_that_few_planar_problems_solve() {
+    let sides = DVec3::new(1.0, 0.7, 0.5);
+    let kinds = [
+        ("box", cuboid(sides), 1.3),
+        ("prism of 6 sides", prism(6, 0.7), 1.5),
+        ("prism of 100 sides", prism(100, 0.7), 1.5),
+        ("prism of 1,600 sides", prism(1_600, 0.7), 1.5),
+    ];
+    for (name, mesh, most) in kinds {
+        let body = ConvexPolyhedron::from_points(&mesh.vertices).expect("a body");
+        let mut random = Random::new(16);
+        let [mut problems, mut pivots, mut contacts] = [0; 3];
+        for _ in 0..3 * SETTINGS {
+            let cast = cast(&body, &mut random);
+            let guess = cta::Options::new(cta::Start::Guess, cta::Until::Exit);
+            let guess = with(&cast, guess.with_keeps_to_cell(false));
+            let Some(found) = contact(guess.first_contact().expect("an answer")) else { continue };
+            assert!(found.steps.planar_problems > 0, "{name}: {:?}", found.steps);
+            contacts += 1;
+            problems += found.steps.planar_problems;
+            pivots += found.steps.pivots;
+            let known = contact(cast.first_contact().expect("an answer")).expect("it meets");
+            let [a, b] = [found.certificate, known.certificate];
+            assert!(a.lower <= b.upper && b.lower <= a.upper, "{name}: {a:?} {b:?}");
+        }
+        let mean = |sum: u32| f64::from(sum) / f64::from(contacts);
+        let [problems, pivots] = [mean(problems), mean(pivots)];
+        assert!(contacts > 200 && problems < most, "{name}: {problems} in {contacts}");
+        // The exit test sees the vertex of one body on a face of the other, also on a face of many sides.
+        assert!(pivots < 1.05, "{name}: {pivots} portals");
     }
 }
 

@@ -52,7 +52,7 @@ struct MaxExcess {
 /// faces.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LargeFace {
-    face: u32,
+    pub(crate) face: u32,
     corner_count: u32,
     /// Three corners that span the face.
     pub(crate) corners: [u32; 3],
@@ -348,6 +348,11 @@ impl ConvexPolyhedron {
     #[inline]
     pub(crate) fn has_large_faces(&self) -> bool {
         (1..=MAX_LARGE_FACES).contains(&self.large_faces.len())
+    }
+
+    /// Returns the large faces.
+    pub(crate) fn large_faces(&self) -> &[LargeFace] {
+        &self.large_faces
     }
 
     /// Returns the large face whose outward normal has the largest product with `direction` (body frame, any

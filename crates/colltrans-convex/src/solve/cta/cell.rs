@@ -31,7 +31,7 @@ pub(super) enum FeatureChange {
     Unnamed,
     /// The contact leaves a face over this half-edge.
     Edge(usize, u32),
-    /// The contact reaches this vertex, an end of its mesh edge.
+    /// The level reaches that of this vertex. If the contact is on a mesh edge that ends there, it reaches the vertex.
     Vertex(usize, u32),
     /// The contact reaches the face of this half-edge.
     Face(usize, u32),
@@ -57,7 +57,7 @@ pub(super) struct BestPoint {
 }
 
 impl ContactCell {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             sides: [Affine::default(); MAX_CELL_SIDES],
             changes: [FeatureChange::Unnamed; MAX_CELL_SIDES],
@@ -274,16 +274,6 @@ impl ContactCell {
     fn add_mesh_edges(&mut self, contact: &EdgeContact) {
         let SectionEdge { low, high, .. } = contact.edge;
         let own = level_axis(contact.body);
-        self.add_half_plane(
-            contact.level - low.levels[0].max(high.levels[0]),
-            own,
-            FeatureChange::Unnamed,
-        );
-        self.add_half_plane(
-            low.levels[1].min(high.levels[1]) - contact.level,
-            -own,
-            FeatureChange::Unnamed,
-        );
         for (end, sign) in [(low, 1.0), (high, -1.0)] {
             self.add_half_plane(
                 sign * (contact.position - contact.measure.dot(end.w)),
@@ -291,6 +281,19 @@ impl ContactCell {
                 FeatureChange::Edge(contact.body, end.half_edge),
             );
         }
+        // These sides follow, because a vertex narrows an edge, not the face.
+        let bottom = if low.levels[0] > high.levels[0] { low } else { high };
+        let top = if low.levels[1] < high.levels[1] { low } else { high };
+        self.add_half_plane(
+            contact.level - bottom.levels[0],
+            own,
+            FeatureChange::Vertex(contact.body, bottom.vertices[0]),
+        );
+        self.add_half_plane(
+            top.levels[1] - contact.level,
+            -own,
+            FeatureChange::Vertex(contact.body, top.vertices[1]),
+        );
     }
 
     /// Adds the sides of a vertex contact: the vertex of section `upper` stays on its mesh edge, and between
@@ -342,13 +345,13 @@ impl ContactCell {
 }
 
 impl PlanarAnswer {
-    /// Returns the cell of a contact. `None` if the sections are separated.
-    pub(super) fn contact_cell(
+    /// Adds the sides of the cell of a contact to `cell`, which has none. Returns `false` if the sections are separated.
+    pub(super) fn add_contact_cell(
         &self,
         sides: &[SectionedBody; 2],
         levels: [f64; 2],
-    ) -> Option<ContactCell> {
-        let mut cell = ContactCell::new();
+        cell: &mut ContactCell,
+    ) -> bool {
         match self {
             Self::Vertex { upper, vertex, left, right } => {
                 cell.add_vertex_contact((*upper, vertex), [left, right], sides, levels);
@@ -368,8 +371,8 @@ impl PlanarAnswer {
                     cell.add_edge_contact(&contact, &sides[body]);
                 }
             }
-            Self::Separated { .. } => return None,
+            Self::Separated { .. } => return false,
         }
-        Some(cell)
+        true
     }
 }

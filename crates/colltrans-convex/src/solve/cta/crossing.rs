@@ -10,7 +10,7 @@ use glam::DVec2;
 use colltrans_kernel::noise;
 
 /// A vertex of a section: the point where a mesh edge crosses the level.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Crossing {
     /// Half-edge of the mesh edge in the direction of increasing level.
     pub(super) half_edge: u32,
@@ -88,7 +88,7 @@ pub(super) fn is_horizontal(direction: DVec2) -> bool {
 }
 
 /// An edge of a section, directed up its chain.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct SectionEdge {
     /// Lower end.
     pub(super) low: Crossing,

@@ -122,16 +122,16 @@ impl ExitTest<'_, '_> {
             }
             CommonNormal::Undecided => return ExitResult::Missed,
         };
-        let [p, q] =
-            [0, 1].map(|body| self.vertex_position(body, self.first_vertex(body, features[body])));
-        let height = normal.dot(q + self.setting.offset - p);
+        let point =
+            |body: usize| self.vertex_position(body, self.first_vertex(body, features[body]));
+        let height = normal.dot(point(1) + self.setting.offset - point(0));
         if (upper - height).abs() > HEIGHT_TOLERANCE * self.extent {
             return ExitResult::Missed;
         }
-        let vertices = [0, 1].map(|body| self.vertex_pairs(body, features[body]));
+        let vertices = |body: usize| self.vertex_pairs(body, features[body]);
         ExitResult::Solved(SolvedContact {
             normal,
-            vertices,
+            vertices: [vertices(0), vertices(1)],
             corners: self.difference_corners(features),
         })
     }
@@ -198,7 +198,11 @@ impl ExitTest<'_, '_> {
         let mut feature = from;
         for change in changes {
             feature = match (change, feature) {
-                (FeatureChange::Vertex(b, v), _) if b == body => Feature::Vertex(v),
+                (FeatureChange::Vertex(b, v), Feature::Edge(e))
+                    if b == body && [topology.origin(e), topology.target(e)].contains(&v) =>
+                {
+                    Feature::Vertex(v)
+                }
                 (FeatureChange::Edge(b, h), Feature::Face(_)) if b == body => Feature::Edge(h),
                 (FeatureChange::Edge(b, h), Feature::Edge(e)) if b == body => {
                     shared_vertex(topology, e, h).map_or(feature, Feature::Vertex)
@@ -236,17 +240,28 @@ impl ExitTest<'_, '_> {
         }
         // The sum of the coordinates bounds the length of the normal without a square root (the paper, V-A).
         let noise = self.setting.noise().point_error() * normal.abs().element_sum();
-        let farthest = [0, 1].map(|body| {
-            let outward = self.in_body_frame(body, if body == 0 { normal } else { -normal });
-            self.farthest_step(body, outward, features[body])
-        });
-        if farthest.iter().all(|(distance, _)| *distance <= noise) {
+        let own_face = match features {
+            [Feature::Face(_), _] => Some(0),
+            [_, Feature::Face(_)] => Some(1),
+            _ => None,
+        };
+        let farthest = |body: usize| match features[body] {
+            // The normal is that of this face.
+            Feature::Face(h) if own_face == Some(body) => (0.0, h),
+            feature => {
+                let outward = self.in_body_frame(body, if body == 0 { normal } else { -normal });
+                self.farthest_step(body, outward, feature)
+            }
+        };
+        let (of_p, of_q) = (farthest(0), farthest(1));
+        if of_p.0 <= noise && of_q.0 <= noise {
             return CommonNormal::Normal(normal);
         }
-        CommonNormal::Unsupported([0, 1].map(|body| match (farthest[body], features[body]) {
+        let edge = |farthest: (f64, u32), feature: Feature| match (farthest, feature) {
             ((distance, _), Feature::Face(h) | Feature::Edge(h)) if distance <= noise => h,
             ((_, h), _) => h,
-        }))
+        };
+        CommonNormal::Unsupported([edge(of_p, features[0]), edge(of_q, features[1])])
     }
 
     /// Returns the cross product of two edges. `None` if they are parallel.

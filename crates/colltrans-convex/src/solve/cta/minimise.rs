@@ -132,7 +132,7 @@ impl SectionPair<'_> {
         let hint = if options.starts_cold { PlanarHint::NONE } else { initial.hint };
         let first = planar::solve_planar(&self.sides, levels, &hint);
         watch.phase_ended(Phase::Planar);
-        let Some(first) = first else {
+        let Some(first) = &first else {
             watch.planar_problem(|| PlanarProblem::hidden(levels));
             return match options.start {
                 MinimisationStart::Center => NarrowedSearch::without_sections(),
@@ -146,7 +146,7 @@ impl SectionPair<'_> {
         let gap = options.gap * self.extent;
         let mut search = Minimisation {
             sections: self,
-            region: LevelRegion::from_rectangle(-self.half, self.half),
+            region: None,
             neighbourhood: initial.neighbourhood,
             keeps_to_cell: options.keeps_to_cell,
             cuts: options.cuts,
@@ -158,13 +158,13 @@ impl SectionPair<'_> {
             solved: None,
             last_separation: None,
             contradiction: None,
-            last: (levels, first),
+            last: (levels, *first),
             watch,
             steps: 1,
             predicted: 0,
             ahead: None,
         };
-        if search.apply_answer(initial.levels - self.origin, levels, &first) {
+        if search.apply_answer(initial.levels - self.origin, levels, first) {
             search.solve_planar_problems(gap);
         }
         search.narrowed_search()
@@ -174,7 +174,8 @@ impl SectionPair<'_> {
 /// State of a minimisation. Levels are relative to the middle of all levels.
 struct Minimisation<'q, 'a, 'o, O> {
     sections: &'q SectionPair<'a>,
-    region: LevelRegion,
+    /// Levels that remain. `None` before the first cut: all levels.
+    region: Option<LevelRegion>,
     /// Levels that are searched first. They are dropped when the segment from their centre to the centroid of the
     /// region leaves them outside the region (`next_cut_point`).
     neighbourhood: Option<Neighbourhood>,
@@ -243,7 +244,7 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             };
             let answer = planar::solve_planar(sides, levels, &hint);
             self.watch.phase_ended(Phase::Planar);
-            let Some(answer) = answer else {
+            let Some(answer) = &answer else {
                 self.watch.planar_problem(|| PlanarProblem::hidden(levels));
                 // Elsewhere, the sections may be longer than rounding errors.
                 if self.neighbourhood.take().is_some() {
@@ -251,8 +252,8 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
                 }
                 break;
             };
-            self.last = (levels, answer);
-            if !self.apply_answer(at, levels, &answer) {
+            self.last = (levels, *answer);
+            if !self.apply_answer(at, levels, answer) {
                 break;
             }
         }
@@ -274,7 +275,7 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
     ///
     /// If shifts do not end in their cells, predicted levels near the neighbourhood come first.
     fn next_cut_point(&mut self) -> Option<DVec2> {
-        let centroid = self.region.centroid()?;
+        let centroid = self.region.as_ref()?.centroid()?;
         let Some(neighbourhood) = self.neighbourhood else { return Some(centroid) };
         if !self.keeps_to_cell
             && self.predicted < MAX_PREDICTED
@@ -284,7 +285,7 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             return Some(at);
         }
         let entry = neighbourhood.entry_point(centroid);
-        if self.region.contains(entry) {
+        if self.region_contains(entry) {
             return Some(entry);
         }
         self.neighbourhood = None;
@@ -304,7 +305,12 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         let most = self.sections.half * INNER_LEVELS;
         let at = at.clamp(-most, most);
         let is_near = (at - center).abs().max_element() <= PREDICTED_REACH * neighbourhood.half;
-        (is_near && self.region.contains(at)).then_some(at)
+        (is_near && self.region_contains(at)).then_some(at)
+    }
+
+    /// Checks whether levels remain after all cuts.
+    fn region_contains(&self, at: DVec2) -> bool {
+        self.region.as_ref().is_some_and(|region| region.contains(at))
     }
 
     /// Shifts to the best point of the answer's cell, cuts the region and raises the bound. Returns `false` if
@@ -333,11 +339,12 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             let step = (BEYOND_LINE * value / gradient.length_squared()).max(least);
             self.ahead = Some(at - gradient * step);
         }
-        self.region.cut_by(bound.gradient, limit - bound.value);
-        let sides = &mut self.watch.steps.region_sides;
-        *sides = self.region.side_count().max(*sides);
-        self.watch.phase_ended(Phase::Region);
         let half = self.sections.half;
+        let region = self.region.get_or_insert_with(|| LevelRegion::from_rectangle(-half, half));
+        region.cut_by(bound.gradient, limit - bound.value);
+        let sides = &mut self.watch.steps.region_sides;
+        *sides = region.side_count().max(*sides);
+        self.watch.phase_ended(Phase::Region);
         let all = self.bound.get_or_insert_with(|| LowerBound::new([-half, half], self.floor));
         let progress = all.add_piece(LinearPiece { bound, ..local });
         let lower = all.least_t;
@@ -366,10 +373,11 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         local: &LinearPiece,
     ) {
         let sides = &self.sections.sides;
-        let Some(cell) = answer.contact_cell(sides, levels) else {
+        let mut cell = ContactCell::new();
+        if !answer.add_contact_cell(sides, levels, &mut cell) {
             self.last_separation = Some((answer.feature_vertices(), local.normal));
             return self.report_planar_problem(levels, answer, local, &BestPoint::default());
-        };
+        }
         let best = cell.best_point(local.bound.gradient);
         self.report_planar_problem(levels, answer, local, &best);
         self.watch.cell(|| self.sections.cell_corners(&cell, levels));
@@ -393,7 +401,9 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
     fn is_remainder_narrow(&self) -> bool {
         let size = match self.neighbourhood {
             Some(neighbourhood) => DVec2::splat(2.0 * neighbourhood.half),
-            None => self.region.level_extent(),
+            None => {
+                self.region.as_ref().map_or(2.0 * self.sections.half, LevelRegion::level_extent)
+            }
         };
         let near = DVec2::from_array(self.sections.sides.each_ref().map(|side| side.near_distance));
         size.cmple(near * NARROW_FACTOR).all()
@@ -423,7 +433,10 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         if !is_there {
             return None;
         }
-        let cell = answer.contact_cell(sides, levels)?;
+        let mut cell = ContactCell::new();
+        if !answer.add_contact_cell(sides, levels, &mut cell) {
+            return None;
+        }
         let best = cell.best_point(local.bound.gradient);
         if local.bound.value + best.change >= self.upper {
             return None;

@@ -249,20 +249,20 @@ impl Section<'_> {
     }
 
     /// Finds the edge of a chain at height `h`, or the topmost one, from a half-edge upwards that crosses a level
-    /// nearby. `None` after [`Self::max_steps`], or if rounding hides the way.
+    /// nearby, and stores it in `edge`. `None` after [`Self::max_steps`], or if rounding hides the way.
     pub(super) fn edge_at_height(
         &self,
         chain: Chain,
         h: f64,
         from: u32,
-    ) -> Option<(SectionEdge, Located)> {
+        edge: &mut SectionEdge,
+    ) -> Option<Located> {
         let start = self.section_vertex(self.walk_to_level(from, |height| (height - h).abs())?);
-        let mut edge = self.edge_toward_height(chain, start, h);
+        self.edge_toward_height(chain, start, h, edge);
         if !chain.is_ascending(edge.direction) {
-            edge = self.any_chain_edge(chain, start)?;
+            *edge = self.any_chain_edge(chain, start)?;
         }
-        let located = self.walk_to_height(chain, h, &mut edge)?;
-        Some((edge, located))
+        self.walk_to_height(chain, h, edge)
     }
 
     /// Walks along a chain from one of its edges to the edge at height `h`, or the topmost one. `None` after
@@ -309,14 +309,17 @@ impl Section<'_> {
         None
     }
 
-    /// Returns the section edge at the vertex `start` that leads along `chain` towards height `h`. It may lie
+    /// Stores the section edge at the vertex `start` that leads along `chain` towards height `h` in `edge`. It may lie
     /// past the ends of the chain.
-    fn edge_toward_height(&self, chain: Chain, start: Crossing, h: f64) -> SectionEdge {
+    fn edge_toward_height(&self, chain: Chain, start: Crossing, h: f64, edge: &mut SectionEdge) {
         if start.h() <= h {
-            SectionEdge::new(start, self.next_vertex(chain, &start))
+            edge.low = start;
+            edge.high = self.next_vertex(chain, &start);
         } else {
-            SectionEdge::new(self.previous_vertex(chain, &start), start)
+            edge.low = self.previous_vertex(chain, &start);
+            edge.high = start;
         }
+        edge.direction = edge.low.edge_direction_to(&edge.high);
     }
 
     /// Finds an edge of the chain near the vertex `start`. This vertex is at the top or at the bottom of the chain, or

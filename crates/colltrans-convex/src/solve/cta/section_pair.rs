@@ -26,6 +26,28 @@ pub(super) struct SectionPair<'a> {
     pub(super) extent: f64,
 }
 
+impl SectionFrame {
+    /// Places a body in section coordinates. `matrix` and `offset` map its frame to that of the setting, `axis` is the
+    /// index of its section axis, and `along` is the component of this axis along the direction.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "a copy through memory")]
+    fn sectioned_body<'a>(
+        &self,
+        body: &'a ConvexPolyhedron,
+        matrix: DMat3,
+        axis: usize,
+        along: f64,
+        offset: DVec3,
+    ) -> SectionedBody<'a> {
+        let to_body = matrix.transpose();
+        let [h, g] = self.shadow;
+        let shadow = [to_body * h, to_body * g];
+        let constant = DVec2::new(h.dot(offset), g.dot(offset));
+        let sections = body.sections().axis(axis);
+        SectionedBody::new((body.vertices(), body.topology(), sections), along, shadow, constant)
+    }
+}
+
 impl<'a> SectionPair<'a> {
     /// Chooses the section axes, and places both bodies in section coordinates.
     pub(super) fn new(setting: &'a Setting<'a>) -> Self {
@@ -35,22 +57,10 @@ impl<'a> SectionPair<'a> {
         let axes = [pair.moving.1 / along[0], pair.fixed.1 / along[1]];
         let c = axes[0] - axes[1];
         let frame = SectionFrame { axes, along, shadow: [c, d.cross(c)] };
-        let side = |body: &'a ConvexPolyhedron, matrix: DMat3, axis: usize, along: f64, offset| {
-            let to_body = matrix.transpose();
-            let shadow = frame.shadow.map(|covector| to_body * covector);
-            let constant = DVec2::from_array(frame.shadow.map(|covector| covector.dot(offset)));
-            let sections = body.sections().axis(axis);
-            SectionedBody::new(
-                (body.vertices(), body.topology(), sections),
-                along,
-                shadow,
-                constant,
-            )
-        };
         let (p, q) = (setting.moving_matrix, setting.fixed_matrix);
         let sides = [
-            side(setting.moving, p, pair.moving.0, along[0], DVec3::ZERO),
-            side(setting.fixed, q, pair.fixed.0, along[1], setting.offset),
+            frame.sectioned_body(setting.moving, p, pair.moving.0, along[0], DVec3::ZERO),
+            frame.sectioned_body(setting.fixed, q, pair.fixed.0, along[1], setting.offset),
         ];
         let ranges = [sides[0].level_range(), sides[1].level_range()];
         let half = DVec2::from_array(ranges.map(|r| 0.5 * (r[1] - r[0])));

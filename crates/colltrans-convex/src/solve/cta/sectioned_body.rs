@@ -45,6 +45,8 @@ pub(super) struct SectionedBody<'a> {
 impl<'a> SectionedBody<'a> {
     /// Builds the section coordinates. The covectors `shadow` are in the body frame, `constant` is the shadow
     /// of its origin. `along` is the component of the section axis along the direction.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "a copy through memory")]
     pub(super) fn new(
         (vertices, topology, sections): (&'a [DVec3], &'a Topology, &'a AxisSections),
         along: f64,

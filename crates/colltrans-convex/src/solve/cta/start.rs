@@ -74,9 +74,14 @@ impl SectionPair<'_> {
         let lateral = normal - self.frame.axes[0] * normal.dot(self.setting.unit);
         let right = usize::from(lateral.dot(self.frame.shadow[1]) > 0.0);
         let vertices = pair.indices();
-        let [p, q] = [0, 1].map(|body| self.sides[body].point_height(focus.touching[body]));
-        let edges = [0, 1].map(|body| self.sides[body].upward_edge_at(vertices[body]));
-        PlanarHint { height: p.max(q), levels, last: LastAnswer::Facing { right, edges } }
+        let height = |body: usize| self.sides[body].point_height(focus.touching[body]);
+        let edge = |body: usize| self.sides[body].upward_edge_at(vertices[body]);
+        let edges = [edge(0), edge(1)];
+        PlanarHint {
+            height: height(0).max(height(1)),
+            levels,
+            last: LastAnswer::Facing { right, edges },
+        }
     }
 
     /// Returns a constant below all values of `phi`, with a zero normal.
@@ -91,10 +96,11 @@ impl SectionPair<'_> {
     /// Returns the levels of two points in the bodies' frames, moved away from the ends of the ranges by
     /// [`LEVEL_MARGIN`].
     fn inner_levels(&self, points: [DVec3; 2]) -> DVec2 {
-        DVec2::from_array([0, 1].map(|body| {
+        let level = |body: usize| {
             let [low, high] = self.sides[body].level_range();
             let margin = LEVEL_MARGIN * (high - low);
             self.sides[body].point_level(points[body]).clamp(low + margin, high - margin)
-        }))
+        };
+        DVec2::new(level(0), level(1))
     }
 }

@@ -62,13 +62,18 @@ impl<'a, 'b> FacingChains<'a, 'b> {
         Self { sections, chains, right }
     }
 
-    /// Finds the edges at a height, or the nearest ones, from half-edges upwards. `None` if a walk fails.
-    pub(super) fn edges_at_height(&self, height: f64, from: [u32; 2]) -> Option<[SectionEdge; 2]> {
-        let edge = |body: usize| {
-            let section = &self.sections[body];
-            Some(section.edge_at_height(self.chains[body], height, from[body])?.0)
-        };
-        Some([edge(0)?, edge(1)?])
+    /// Finds the edges at a height, or the nearest ones, from half-edges upwards, and stores them in `edges`. `None` if a
+    /// walk fails.
+    pub(super) fn edges_at_height(
+        &self,
+        height: f64,
+        from: [u32; 2],
+        edges: &mut [SectionEdge; 2],
+    ) -> Option<()> {
+        for (body, edge) in edges.iter_mut().enumerate() {
+            self.sections[body].edge_at_height(self.chains[body], height, from[body], edge)?;
+        }
+        Some(())
     }
 
     /// Goes from two edges towards the height at which the gap closes, by Newton's method. Because the gap is

@@ -123,7 +123,9 @@ impl SectionProblem<'_> {
             LastAnswer::Nothing => None,
             LastAnswer::Facing { right, edges } => {
                 let chains = FacingChains::new(&self.sections, right);
-                let mut edges = chains.edges_at_height(height, edges)?;
+                let from = edges;
+                let mut edges = [SectionEdge::default(); 2];
+                chains.edges_at_height(height, from, &mut edges)?;
                 match chains.walk_to_answer(&mut edges)? {
                     ChainWalk::Solved(found) => Some(found),
                     ChainWalk::Within(upper) => {
@@ -155,9 +157,10 @@ impl SectionProblem<'_> {
         let bottom = self.sections[upper].find_bottom(vertex)?;
         let h0 = bottom.vertex.h();
         let ends = self.bottom_ends(upper, &bottom);
-        let mut edges = [None; 2];
-        for (chain, from) in [Chain::Left, Chain::Right].into_iter().zip(between) {
-            let (edge, located) = lower.edge_at_height(chain, h0, from)?;
+        let mut edges = [SectionEdge::default(); 2];
+        let chains = [Chain::Left, Chain::Right].into_iter().zip(between);
+        for ((chain, from), edge) in chains.zip(&mut edges) {
+            let located = lower.edge_at_height(chain, h0, from, edge)?;
             if located == Located::AboveTop {
                 let [bottom, top] = [&bottom.vertex, &edge.high];
                 return Some(PlanarAnswer::separated_by_height(upper, bottom, top));
@@ -165,12 +168,11 @@ impl SectionProblem<'_> {
             if edge.low.h() > h0 && !is_upper_known {
                 return self.solve_at_bottom(1 - upper, edge.low.half_edge, [vertex; 2], true);
             }
-            if let Some(end) = end_beyond_chain(chain, &edge, h0, &ends) {
-                return self.solve_facing(upper, *end, chain, edge);
+            if let Some(end) = end_beyond_chain(chain, edge, h0, &ends) {
+                return self.solve_facing(upper, *end, chain, *edge);
             }
-            edges[usize::from(chain == Chain::Right)] = Some(edge);
         }
-        Some(bottom_contact(upper, &ends, [edges[0]?, edges[1]?], h0))
+        Some(bottom_contact(upper, &ends, edges, h0))
     }
 
     /// Returns both ends of a section's bottom, from left to right.

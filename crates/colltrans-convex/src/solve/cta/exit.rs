@@ -18,6 +18,7 @@ use super::cell::{FeatureChange, SideChanges, face_of_edge};
 use super::planar::PlanarAnswer;
 use super::region::LevelRegion;
 use super::sectioned_body::SectionedBody;
+use crate::body::MAX_SCANNED_NEIGHBOURS;
 use crate::setting::{Setting, TwoBodies, VertexPair};
 use colltrans_kernel::topology::Topology;
 
@@ -291,8 +292,18 @@ impl ExitTest<'_, '_> {
     }
 
     /// Finds the step of [`Self::for_each_step`] that leads farthest along `outward`, a normal in the body frame.
-    /// Returns its distance, and a half-edge of the face that contains it.
+    /// Returns its distance, and a half-edge of the face that contains it. At a vertex with many edges, takes the steepest
+    /// edge.
     fn farthest_step(&self, body: usize, outward: DVec3, feature: Feature) -> (f64, u32) {
+        if let Feature::Vertex(v) = feature
+            && self.count_steps(body, feature) > MAX_SCANNED_NEIGHBOURS
+        {
+            let polyhedron = if body == 0 { self.setting.moving } else { self.setting.fixed };
+            let position = polyhedron.steepest_edge_position(v, outward);
+            let topology = self.sides[body].topology;
+            let step = self.vertex_difference(body, v, topology.neighbours(v)[position]);
+            return (outward.dot(step), topology.outgoing_half_edges(v)[position]);
+        }
         let mut farthest = (f64::NEG_INFINITY, 0);
         self.for_each_step(body, feature, |step, h| {
             let distance = outward.dot(step);

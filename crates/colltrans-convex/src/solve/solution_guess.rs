@@ -2,13 +2,15 @@
 //! paper's algorithm, in a query without an earlier solution.
 //!
 //! `p` is a pair of points, one of each body, that probably touch; only their section levels matter. Sources:
-//! 1. [`outline_contact`], if both bodies have outlines.
-//! 2. A large face of one body and the vertex of the other one opposite it, if their plane proves a higher lower bound
-//!    than the first normal. If the line misses the face of a box, the points are on the face and near its boundary.
-//! 3. Support points of `M`, each along a slope that should move its shadow to the line (a quasi-Newton method on the
+//! 1. A face of two bodies *like boxes*: with few vertices, and large faces alone.
+//! 2. [`outline_contact`], if both bodies have outlines.
+//! 3. A large face of one body and the vertex of the other one opposite it, if their plane proves a higher lower bound
+//!    than the first normal.
+//! 4. Support points of `M`, each along a slope that should move its shadow to the line (a quasi-Newton method on the
 //!    concave `f` of [`portal`](super::portal), whose gradient is the shadow).
 //!
-//! `delta` is the lateral distance that is left, or an edge of the bodies if this is longer.
+//! If the line misses the face of a body like a box, both points move towards the face. On bodies like boxes a point then
+//! moves towards the centre. `delta` is the lateral distance that is left, or an edge of the bodies if this is longer.
 
 use glam::{DMat2, DVec2, DVec3};
 
@@ -41,14 +43,19 @@ const BETWEEN_SHARE: f64 = 0.05;
 /// Minimum cosine between the normal of a large face and the direction at which the face is tried.
 const MIN_FACE_COSINE: f64 = 0.05;
 
-/// Minimum cosine between the normal of another face of a box and the direction at which this face is tried (measured).
+/// Minimum cosine between the normal of another face of a body like a box and the direction at which this face is tried
+/// (measured).
 const MIN_OTHER_COSINE: f64 = 0.4;
 
-/// Maximum number of vertices of a box.
+/// Maximum number of vertices of a body like a box.
 const MAX_BOX_VERTICES: usize = 32;
 
-/// Share of the way to the centre of a box by which a point of contact is moved. Sections through its boundary may miss
-/// those of the other body.
+/// Distance of the line from a face, as a share of the length of a side, up to which it meets the face. Rounding of
+/// flush faces stays far below.
+const NEAR_FACE: f64 = 1e-9;
+
+/// Share of the way to the centre of a body like a box by which a point of contact is moved. Sections through its
+/// boundary may miss those of the other body.
 const INSIDE_SHARE: f64 = 0.02;
 
 /// As [`INSIDE_SHARE`], if an edge probably touches instead of the face. Cells are large, so that a shift returns to the
@@ -58,13 +65,13 @@ const MISSED_SHARE: f64 = 0.3;
 /// Least `delta` on bodies with rims, as a multiple of the radius over the number of vertices: about a side of a rim.
 const RIM_EDGES: f64 = 8.0;
 
-/// Guesses the solution. `None` if the bodies seem to miss each other.
+/// Guesses the solution. `None` if the bodies seem to miss each other, unless both are like boxes.
 pub(super) fn guessed_solution<O: Observer>(context: &mut Context<O>) -> Option<LastSolution> {
     solution_near(context, NormalGuess::with_curvatures)
 }
 
-/// Guesses the solution from the normal of the contact against the direction (frame of the moving body). `None` if
-/// the bodies seem to miss each other.
+/// Guesses the solution from the normal of the contact against the direction (frame of the moving body). Two bodies like
+/// boxes do not need the normal. `None` if the bodies seem to miss each other, unless both are like boxes.
 pub(super) fn opposite_solution<O: Observer>(
     context: &mut Context<O>,
     normal: DVec3,
@@ -73,13 +80,13 @@ pub(super) fn opposite_solution<O: Observer>(
     solution_near(context, |difference| NormalGuess::opposite_with_curvatures(difference, other))
 }
 
-/// Guesses the solution from a face of two boxes, or from a guess of its normal.
+/// Guesses the solution from a face of two bodies like boxes, or from a guess of its normal.
 fn solution_near<O: Observer>(
     context: &mut Context<O>,
     guess: impl FnOnce(&MinkowskiDifference) -> (NormalGuess, [DMat2; 2]),
 ) -> Option<LastSolution> {
     let setting = context.difference.setting;
-    if is_box(setting.moving) && is_box(setting.fixed) {
+    if is_like_box(setting.moving) && is_like_box(setting.fixed) {
         let found = solution_on_large_face(context, f64::NEG_INFINITY);
         if found.is_some() {
             return found;
@@ -184,8 +191,8 @@ impl<'a> FaceContact<'a> {
 /// Returns the contact of a large face with the vertex of the other body that is nearest to its plane. `None` if
 /// neither body has a face whose plane is a higher lower bound than `least`.
 ///
-/// Tries the face of each body that is most perpendicular to the line. If the line misses the higher one, and this is a
-/// face of a box, tries the other faces of boxes.
+/// Tries the face of each body that is most perpendicular to the line. If the line misses the higher one, and its body is
+/// like a box, tries the other faces of such bodies.
 fn solution_on_large_face<O: Observer>(
     context: &mut Context<O>,
     least: f64,
@@ -206,7 +213,7 @@ fn solution_on_large_face<O: Observer>(
     let mut points = highest.as_ref()?.points_of_contact(&context.difference);
     if points.misses_face {
         for (body, of_body) in [moving, fixed].into_iter().enumerate() {
-            let faces = if is_box(of_body) { of_body.large_faces() } else { &[] };
+            let faces = if is_like_box(of_body) { of_body.large_faces() } else { &[] };
             for face in faces {
                 if face.normal.dot(down[body]) > MIN_OTHER_COSINE
                     && nearest[body].is_none_or(|nearest| nearest.face != face.face)
@@ -224,7 +231,7 @@ fn solution_on_large_face<O: Observer>(
     let FaceContact { normal, pair, height, .. } = highest?;
     let share = if points.misses_face { MISSED_SHARE } else { INSIDE_SHARE };
     let inside = |body: &ConvexPolyhedron, point: DVec3| {
-        if is_box(body) { point.lerp(body.inertia().center, share) } else { point }
+        if is_like_box(body) { point.lerp(body.inertia().center, share) } else { point }
     };
     let [p, q] = points.touching;
     (height > least).then(|| LastSolution {
@@ -238,17 +245,17 @@ fn solution_on_large_face<O: Observer>(
 /// Points of contact of a face, in the frames of P and of Q.
 struct FaceContactPoints {
     touching: [DVec3; 2],
-    /// Whether the face is one of a box, and the line misses it. Then the points are moved onto the face.
+    /// Whether the body of the face is like a box, and the line misses the face. Then the points are moved towards it.
     misses_face: bool,
 }
 
 impl FaceContact<'_> {
-    /// Returns the points of contact on the line, moved onto the face if this is one of a box.
+    /// Returns the points of contact on the line, moved towards the face if its body is like a box.
     fn points_of_contact(&self, difference: &MinkowskiDifference) -> FaceContactPoints {
         let TwoBodies { moving, fixed, .. } = difference.setting.bodies;
         let mut touching = difference.points_on_line(self.pair, self.body, self.height);
         let of_face = if self.body == 0 { moving } else { fixed };
-        if !is_box(of_face) {
+        if !is_like_box(of_face) {
             return FaceContactPoints { touching, misses_face: false };
         }
         let way = way_onto_face(of_face, self.face, touching[self.body]);
@@ -265,13 +272,15 @@ impl FaceContact<'_> {
     }
 }
 
-/// Checks whether a body has few vertices and large faces.
-fn is_box(body: &ConvexPolyhedron) -> bool {
-    body.vertices().len() <= MAX_BOX_VERTICES && body.has_large_faces()
+/// Checks whether a body has few vertices and large faces alone.
+fn is_like_box(body: &ConvexPolyhedron) -> bool {
+    body.vertices().len() <= MAX_BOX_VERTICES
+        && body.has_large_faces()
+        && body.large_faces().len() == body.face_count()
 }
 
-/// Returns the way from a point in the plane of a face to the face: across each side beyond which the point lies, one
-/// after the other.
+/// Returns the way from a point in the plane of a face towards the face: across each side beyond which the point lies,
+/// one after the other. It may end beside an acute corner.
 fn way_onto_face(body: &ConvexPolyhedron, face: &LargeFace, point: DVec3) -> DVec3 {
     let mut corners = body.face_vertices(face.face).map(|v| body.vertices()[v as usize]);
     let Some(first) = corners.next() else { return DVec3::ZERO };
@@ -279,7 +288,7 @@ fn way_onto_face(body: &ConvexPolyhedron, face: &LargeFace, point: DVec3) -> DVe
     for to in corners.chain(std::iter::once(first)) {
         let outward = (to - from).cross(face.normal);
         let excess = outward.dot(moved - from);
-        if excess > 0.0 {
+        if excess > NEAR_FACE * outward.length_squared() {
             moved -= outward * (excess / outward.length_squared());
         }
         from = to;

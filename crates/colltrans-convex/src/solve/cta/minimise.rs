@@ -308,9 +308,9 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         (is_near && self.region_contains(at)).then_some(at)
     }
 
-    /// Checks whether levels remain after all cuts.
+    /// Checks whether the levels `at` remain after all cuts.
     fn region_contains(&self, at: DVec2) -> bool {
-        self.region.as_ref().is_some_and(|region| region.contains(at))
+        self.region.as_ref().is_none_or(|region| region.contains(at))
     }
 
     /// Shifts to the best point of the answer's cell, cuts the region and raises the bound. Returns `false` if

@@ -39,16 +39,23 @@ pub struct SplitRule {
 /// Partitions the items so that those of the first child come first, and returns their number.
 #[inline]
 pub fn split_items<T: Boxed>(items: &mut [T], rule: SplitRule) -> usize {
-    let least = rule.min_items;
     let centers = Aabb::from_points(items.iter().map(Boxed::doubled_center));
-    if let Some((axis, bin)) = least_cost_split(items, &centers, rule) {
-        let key = Binning::new(&centers, axis, items.len());
+    split_items_within(items, &centers, rule)
+}
+
+/// Partitions the items like [`split_items`]. `centers` is the box of the centres, as [`Boxed::doubled_center`] returns
+/// them.
+#[inline]
+pub fn split_items_within<T: Boxed>(items: &mut [T], centers: &Aabb, rule: SplitRule) -> usize {
+    let least = rule.min_items;
+    if let Some((axis, bin)) = least_cost_split(items, centers, rule) {
+        let key = Binning::new(centers, axis, items.len());
         let middle = move_to_front(items, |item| key.bin_of(item) <= bin);
         if middle >= least && middle + least <= items.len() {
             return middle;
         }
     }
-    split_at_median(items, &centers)
+    split_at_median(items, centers)
 }
 
 /// Partitions the items at the median along the axis of the largest extent of the centres, and returns the

@@ -18,7 +18,7 @@ use glam::{BVec3, DVec3, Vec3Swizzles};
 use super::cuts::{CUTS, SignMaxima};
 use colltrans_convex::body::Aabb;
 use colltrans_kernel::descent::{node_to_split, pair_with_node};
-use colltrans_kernel::split::{Boxed, SplitRule, split_items};
+use colltrans_kernel::split::{Boxed, SplitRule, split_items_within};
 
 /// Maximum number of facets of a leaf.
 pub(crate) const MAX_LEAF_FACETS: usize = 4;
@@ -35,8 +35,8 @@ pub struct Node {
     pub bounds: Aabb,
     pub(crate) axis: DVec3,
     pub(crate) slab: [f64; 2],
-    /// Upper bound on the sine of the largest angle between `axis` and the normal of a facet. It is [`ANY_ANGLE`] from a
-    /// right angle, and [`OPEN_SPREAD`] if a facet belongs to an open shell.
+    /// Upper bound on the sine of the largest angle between `axis` and the normal of a facet. It is [`ANY_ANGLE`] from
+    /// a right angle, and [`OPEN_SPREAD`] if a facet belongs to an open shell.
     pub spread: f32,
     /// Offset to the first child; 0 for a leaf.
     pub child_offset: u32,
@@ -74,6 +74,13 @@ impl Node {
     #[inline]
     pub(crate) fn squared_diagonal(&self) -> f64 {
         self.bounds.side_lengths().length_squared()
+    }
+
+    /// Returns the inward sides among those in which the box touches the sides of an enclosing box.
+    fn inward_sides_within(&self, outer: &Aabb) -> u8 {
+        let Aabb { low, high } = self.bounds;
+        let shared = low.cmpeq(outer.low).bitmask() | high.cmpeq(outer.high).bitmask() << 3;
+        self.inward_sides & shared as u8
     }
 
     #[inline]
@@ -183,8 +190,9 @@ fn build_tree_on(
         .collect();
     let builder = Builder { vertices, triangles };
     let mut nodes = Vec::with_capacity(items.len());
-    nodes.push(builder.bounding_node(&items, 0));
-    builder.build_subtree(&mut items, 0, 0, threads, &mut nodes);
+    let (root, centers) = builder.oriented_node(&items, 0);
+    nodes.push(root);
+    builder.build_subtree(&mut items, 0, &centers, threads, &mut nodes);
     nodes.shrink_to_fit();
     (nodes, items.iter().map(|i| i.facet).collect())
 }
@@ -212,23 +220,30 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Appends the nodes below node `at`, which covers `items` from facet position `first`, and sets the cuts of its
-    /// box. Returns the maxima of the vertices along the signs.
+    /// Appends the nodes below node `at`, which covers `items`, and sets the bounds, inward sides and cuts of this
+    /// node. `centers` is the box of the centres of the items. Returns the maxima of the vertices along the signs.
     fn build_subtree(
         &self,
         items: &mut [Item],
         at: usize,
-        first: u32,
+        centers: &Aabb,
         threads: usize,
         nodes: &mut Vec<Node>,
     ) -> SignMaxima {
-        let maxima = if items.len() <= MAX_LEAF_FACETS {
-            self.facet_maxima(items)
+        let (maxima, bounds, inward_sides) = if items.len() <= MAX_LEAF_FACETS {
+            let bounds = items.iter().fold(Aabb::EMPTY, |bounds, item| bounds.union(&item.bounds));
+            let inward = items.iter().fold(0, |sides, item| sides | item.inward_sides(&bounds));
+            (self.facet_maxima(items), bounds, inward)
         } else {
-            self.build_children(items, at, first, threads, nodes)
+            let maxima = self.build_children(items, at, centers, threads, nodes);
+            let [first, second] = nodes[at].child_positions(at as u32);
+            let children = [&nodes[first as usize], &nodes[second as usize]];
+            let bounds = children[0].bounds.union(&children[1].bounds);
+            let inward = children.map(|child| child.inward_sides_within(&bounds));
+            (maxima, bounds, inward[0] | inward[1])
         };
-        let Node { bounds, cuts, .. } = &mut nodes[at];
-        *cuts = maxima.depth_shares(bounds);
+        let cuts = maxima.depth_shares(&bounds);
+        nodes[at] = Node { bounds, inward_sides, cuts, ..nodes[at] };
         maxima
     }
 
@@ -247,12 +262,14 @@ impl Builder<'_> {
         &self,
         items: &mut [Item],
         at: usize,
-        first: u32,
+        centers: &Aabb,
         threads: usize,
         nodes: &mut Vec<Node>,
     ) -> SignMaxima {
-        let middle = split_items(items, SplitRule { min_items: 1, only_longest_axis: false });
+        let rule = SplitRule { min_items: 1, only_longest_axis: false };
+        let middle = split_items_within(items, centers, rule);
         let (left, right) = items.split_at_mut(middle);
+        let first = nodes[at].first_facet;
         let second = first + middle as u32;
         let child = nodes.len();
         nodes[at].child_offset = (child - at) as u32;
@@ -262,11 +279,13 @@ impl Builder<'_> {
             let mut other = SignMaxima::NONE;
             thread::scope(|scope| {
                 scope.spawn(|| {
-                    behind.push(self.bounding_node(right, second));
-                    other = self.build_subtree(right, 0, second, threads / 2, &mut behind);
+                    let (node, centers) = self.oriented_node(right, second);
+                    behind.push(node);
+                    other = self.build_subtree(right, 0, &centers, threads / 2, &mut behind);
                 });
-                nodes.extend([self.bounding_node(left, first); 2]);
-                maxima = self.build_subtree(left, child, first, threads - threads / 2, nodes);
+                let (node, centers) = self.oriented_node(left, first);
+                nodes.extend([node; 2]);
+                maxima = self.build_subtree(left, child, &centers, threads - threads / 2, nodes);
             });
             maxima.include_maxima(&other);
             // The second child is stored next to the first, its descendants at the end.
@@ -278,24 +297,27 @@ impl Builder<'_> {
             nodes.extend_from_slice(&behind[1..]);
             maxima
         } else {
-            nodes.extend([self.bounding_node(left, first), self.bounding_node(right, second)]);
-            let mut maxima = self.build_subtree(left, child, first, 1, nodes);
-            maxima.include_maxima(&self.build_subtree(right, child + 1, second, 1, nodes));
+            let (left_node, left_centers) = self.oriented_node(left, first);
+            let (right_node, right_centers) = self.oriented_node(right, second);
+            nodes.extend([left_node, right_node]);
+            let mut maxima = self.build_subtree(left, child, &left_centers, 1, nodes);
+            let behind = self.build_subtree(right, child + 1, &right_centers, 1, nodes);
+            maxima.include_maxima(&behind);
             maxima
         }
     }
 
-    /// Returns a leaf node with the bounds of `items`, without cuts.
-    fn bounding_node(&self, items: &[Item], first: u32) -> Node {
-        let mut bounds = Aabb::EMPTY;
+    /// Returns a leaf node with the orientation of `items`, without a box, and the box of their centres.
+    fn oriented_node(&self, items: &[Item], first: u32) -> (Node, Aabb) {
+        let mut centers = Aabb::EMPTY;
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
         for item in items {
-            bounds = bounds.union(&item.bounds);
+            centers.extend_to(item.doubled_center());
             sum += item.normal * item.area;
             total += item.area;
         }
         let mut node = Node {
-            bounds,
+            bounds: Aabb::EMPTY,
             axis: DVec3::ZERO,
             slab: [f64::NEG_INFINITY, f64::INFINITY],
             spread: ANY_ANGLE as f32,
@@ -303,14 +325,14 @@ impl Builder<'_> {
             first_facet: first,
             facet_count: items.len() as u32,
             cuts: [0; CUTS],
-            inward_sides: items.iter().fold(0, |sides, item| sides | item.inward_sides(&bounds)),
+            inward_sides: 0,
         };
         // Only a surface with a dominant orientation has an axis.
         if sum.length() > 0.25 * total {
             node.axis = sum.normalize_or_zero();
             self.add_cone(items, &mut node);
         }
-        node
+        (node, centers)
     }
 
     /// Sets the spread and the slab of a node, or removes its axis if a normal may be perpendicular to it.

@@ -10,7 +10,7 @@ use crate::args::InfoArguments;
 use crate::failure::{Code, Failure, print};
 use crate::numbers::{count_text, error_bound, estimate, six_digits, vector};
 use crate::report::push_line;
-use crate::solid;
+use crate::solid::{self, SolidCheck};
 use crate::terminal::escape_line;
 
 /// Maximum number of names that are listed.
@@ -59,10 +59,11 @@ fn describe_mesh(path: &Path, mesh: &Mesh, convex_tolerance: Option<f64>) -> Str
     if let Some(merged) = Note::merged(mesh) {
         push_line(&mut text, "merged", &merged.to_string());
     }
+    let open_edges = mesh.open_edges();
     if !mesh.faces.is_empty() {
-        push_line(&mut text, "surface", &closedness(mesh));
+        push_line(&mut text, "surface", &closedness(&open_edges));
     }
-    let is_closed = !mesh.faces.is_empty() && mesh.open_edges().is_empty();
+    let is_closed = !mesh.faces.is_empty() && open_edges.is_empty();
     let signed = mesh.signed_volume();
     let volume = match not_finite {
         Some(why) if !(is_closed && signed.is_finite()) => why,
@@ -70,10 +71,11 @@ fn describe_mesh(path: &Path, mesh: &Mesh, convex_tolerance: Option<f64>) -> Str
         _ => "none: the faces do not enclose a body".into(),
     };
     push_line(&mut text, "volume", &volume);
-    for (name, what) in solid::description_lines(mesh) {
+    let check = body::solid_report(mesh, &BodyOptions::default());
+    for (name, what) in solid::description_lines(mesh, &check) {
         push_line(&mut text, name, &what);
     }
-    for (name, what) in part_lines(mesh) {
+    for (name, what) in part_lines(mesh, &check) {
         push_line(&mut text, name, &what);
     }
     // With tolerance 0 the error has the depth of the deepest face.
@@ -105,8 +107,9 @@ fn describe_mesh(path: &Path, mesh: &Mesh, convex_tolerance: Option<f64>) -> Str
     text
 }
 
-/// Returns lines about the parts into which `assembly` splits the mesh; none if it stays one part.
-fn part_lines(mesh: &Mesh) -> Vec<(&'static str, String)> {
+/// Returns lines about the parts into which `assembly` splits the mesh; none if it stays one part. `check` is the report
+/// on the mesh as a solid.
+fn part_lines(mesh: &Mesh, check: &SolidCheck) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
     let named: Vec<String> = mesh.named_parts().into_iter().map(|(name, _)| name).collect();
     if !named.is_empty() {
@@ -114,7 +117,8 @@ fn part_lines(mesh: &Mesh) -> Vec<(&'static str, String)> {
         let first = named[..named.len().min(MAX_NAMES)].join(", ");
         lines.push(("names", format!("{}: {}{more}", named.len(), escape_line(first))));
     }
-    if let Ok(Some(split)) = body::split_bodies(mesh, &BodyOptions::default()) {
+    let is_one_shell = check.as_ref().is_ok_and(|(report, _)| report.shells.len() == 1);
+    if !is_one_shell && let Ok(Some(split)) = body::split_bodies(mesh, &BodyOptions::default()) {
         let what = format!("{}, split with `assembly --split bodies`", split.meshes.len());
         lines.push(("bodies", what));
     }
@@ -156,9 +160,8 @@ fn volume_text(volume: f64) -> String {
 }
 
 /// Describes whether the surface is closed, or one of its open edges.
-fn closedness(mesh: &Mesh) -> String {
-    let open = mesh.open_edges();
-    match open.as_slice() {
+fn closedness(open: &[[u32; 2]]) -> String {
+    match open {
         [] => "closed".into(),
         [[a, b], ..] => format!(
             "not closed: {} no oppositely directed partner, one of them from vertex {a} to vertex {b}",

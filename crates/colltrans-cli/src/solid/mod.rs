@@ -208,22 +208,26 @@ pub(crate) fn placed_surface(
     (placed, faces.flat_map(fan).collect())
 }
 
-/// Returns the lines of `info` about a mesh as a solid, with their headings; none for a point cloud.
-pub(crate) fn description_lines(mesh: &Mesh) -> Vec<(&'static str, String)> {
+/// The report on a mesh as a solid, with the notes on its repair.
+pub(crate) type SolidCheck = Result<(SolidReport, Vec<Note>), BodyError>;
+
+/// Returns the lines of `info` about a mesh as a solid, with their headings; none for a point cloud. `check` is the
+/// [`body::solid_report`] of the mesh with the default options.
+pub(crate) fn description_lines(mesh: &Mesh, check: &SolidCheck) -> Vec<(&'static str, String)> {
     if mesh.faces.is_empty() {
         return Vec::new();
     }
-    let Loaded { body: solid, notes, .. } = match body::solid(mesh, &BodyOptions::default()) {
-        Ok(loaded) => loaded,
+    let (report, notes) = match check {
+        Ok(found) => found,
         Err(refused) => {
-            let mut lines = vec![("solid", format!("no: {refused}{}", option_hint(&refused)))];
-            let open = body::solid(mesh, &BodyOptions::default().with_open(true));
-            let surface = open.ok().and_then(|open| open.body.report().open_shell_summary());
+            let mut lines = vec![("solid", format!("no: {refused}{}", option_hint(refused)))];
+            let open = body::solid_report(mesh, &BodyOptions::default().with_open(true));
+            let surface = open.ok().and_then(|(report, _)| report.open_shell_summary());
             lines.extend(surface.map(|surface| ("with --open", surface)));
             return lines;
         }
     };
-    let mut lines = vec![("solid", format!("yes: {}", shell_counts(solid.report())))];
+    let mut lines = vec![("solid", format!("yes: {}", shell_counts(report)))];
     lines.extend(notes.iter().filter_map(|note| match note {
         // `info` has another line for it.
         Note::Merged(_) => None,
@@ -278,15 +282,19 @@ mod tests {
         Mesh::new(all.vertices, all.faces)
     }
 
+    fn lines_of(mesh: &Mesh) -> Vec<(&'static str, String)> {
+        description_lines(mesh, &body::solid_report(mesh, &BodyOptions::default()))
+    }
+
     #[test]
     fn description_counts_shells_cavities_and_reversed_shells() {
-        let lines = description_lines(&cubes());
+        let lines = lines_of(&cubes());
         assert_eq!(lines[0], ("solid", "yes: 2 shells, 1 cavity, 0 holes through".into()));
         assert_eq!(lines[1], ("repaired", "1 shell turned, inside out in the file".into()));
         assert_eq!(lines.len(), 2);
         let mut open = cubes();
         open.faces.pop();
-        let [("solid", what), ("with --open", surface)] = &description_lines(&open)[..] else {
+        let [("solid", what), ("with --open", surface)] = &lines_of(&open)[..] else {
             panic!("two lines")
         };
         assert!(what.starts_with("no: ") && what.contains("--open"), "{what}");

@@ -16,7 +16,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use colltrans::motion::{MotionCast, Moving};
-use colltrans::solid::{SolidCast, SolidError, SolidOptions, StartOverlap};
+use colltrans::solid::{SolidCast, SolidError, SolidOptions, SolidReport, StartOverlap};
 use colltrans::{
     BuildError, Cast, ConvexPolyhedron, InputVertex, Placed, QueryError, Solid, TopologyError,
 };
@@ -281,8 +281,19 @@ pub fn hull(mesh: &Mesh) -> Result<ConvexPolyhedron, BuildError> {
 pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, BodyError> {
     let precision = mesh.precision * options.scale;
     let mut mesh = options.scaled(mesh);
-    let (body, notes) = build_repaired(&mut mesh, options)?;
+    let (body, notes) = build_repaired(&mut mesh, options, build_solid, Solid::report)?;
     Ok(Loaded { body, precision, notes })
+}
+
+/// Returns the report of the construction of a [`solid`] and the notes on its repair, without building the solid.
+///
+/// # Errors
+/// The errors of [`solid`].
+pub fn solid_report(
+    mesh: &Mesh,
+    options: &BodyOptions,
+) -> Result<(SolidReport, Vec<Note>), BodyError> {
+    build_repaired(&mut options.scaled(mesh), options, build_report, |report| report)
 }
 
 /// The bodies of a mesh.
@@ -303,7 +314,8 @@ pub struct SplitBodies {
 /// The errors of [`solid`] with open shells allowed.
 pub fn split_bodies(mesh: &Mesh, options: &BodyOptions) -> Result<Option<SplitBodies>, BodyError> {
     let mut mesh = options.scaled(mesh);
-    let (solid, mut notes) = build_repaired(&mut mesh, &options.with_open(true))?;
+    let (solid, mut notes) =
+        build_repaired(&mut mesh, &options.with_open(true), build_solid, Solid::report)?;
     let of_triangle = solid.bodies();
     let count = of_triangle.iter().max().map_or(0, |last| *last as usize + 1);
     if count < 2 {
@@ -318,26 +330,41 @@ pub fn split_bodies(mesh: &Mesh, options: &BodyOptions) -> Result<Option<SplitBo
     Ok(Some(SplitBodies { meshes: mesh.split_faces(&of_face, count), notes }))
 }
 
-/// Builds a solid from a mesh, with repairs if needed. Returns it with the notes.
-fn build_repaired(
+/// Builds a solid from a mesh without repairs.
+fn build_solid(mesh: &Mesh, open: bool) -> Result<Solid, SolidError> {
+    let build = if open { Solid::from_open_mesh } else { Solid::from_mesh };
+    build(&mesh.vertices, &mesh.faces)
+}
+
+/// Returns the report of [`build_solid`].
+fn build_report(mesh: &Mesh, open: bool) -> Result<SolidReport, SolidError> {
+    let build = if open { SolidReport::from_open_mesh } else { SolidReport::from_mesh };
+    build(&mesh.vertices, &mesh.faces)
+}
+
+/// Calls `build` with a mesh, with repairs if needed, and whether open shells are allowed. Returns the result with the
+/// notes.
+fn build_repaired<T>(
     mesh: &mut Cow<Mesh>,
     options: &BodyOptions,
-) -> Result<(Solid, Vec<Note>), BodyError> {
+    build: impl Fn(&Mesh, bool) -> Result<T, SolidError>,
+    report: impl Fn(&T) -> &SolidReport,
+) -> Result<(T, Vec<Note>), BodyError> {
     let mut notes: Vec<Note> = Note::merged(mesh).into_iter().collect();
-    let mut built = Solid::from_mesh(&mesh.vertices, &mesh.faces);
+    let mut built = build(mesh, false);
     if let Err(SolidError::Inconsistent { .. } | SolidError::Open { .. }) = built {
         notes.extend(repair::repair(mesh.to_mut()).notes());
-        built = Solid::from_mesh(&mesh.vertices, &mesh.faces);
+        built = build(mesh, false);
     }
     let mut first = None;
     if let Err(SolidError::Open { from, to, facet, .. }) = built
         && options.open
     {
         first = Some([from, to, facet]);
-        built = Solid::from_open_mesh(&mesh.vertices, &mesh.faces);
+        built = build(mesh, true);
     }
     let body = built?;
-    notes.extend(report_notes(body.report(), first));
+    notes.extend(report_notes(report(&body), first));
     let build_repaired = || notes.iter().filter(|note| note.is_repair());
     if options.as_is && build_repaired().next().is_some() {
         return Err(BodyError::NeedsRepair(build_repaired().cloned().collect()));

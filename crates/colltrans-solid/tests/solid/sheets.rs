@@ -1,7 +1,9 @@
 //! Open surfaces in situations with names: what a sheet blocks, and what blocks it.
 
 use colltrans_convex::{Aabb, Bounded, Cast, Clearance, Pose};
-use colltrans_solid::{ShellKind, Solid, SolidCast, SolidFree, SolidOptions, StartOverlap};
+use colltrans_solid::{
+    ShellKind, Solid, SolidCast, SolidFree, SolidOptions, SolidReport, StartOverlap,
+};
 use colltrans_testkit::shapes::{self, Mesh};
 use glam::{DQuat, DVec3};
 
@@ -258,6 +260,20 @@ fn classes_of_shells() {
     let sided = Solid::from_open_mesh(&ball, &around).expect("a ball with a hole");
     assert_eq!(count(&sided), [0, 1, 0]);
     assert_eq!(count(&Solid::from_pieces([&closed, &tray, &sided]).expect("all")), [1, 1, 1]);
+}
+
+/// A report without a solid is that of the solid, or the same error.
+#[test]
+fn report_of_mesh_is_that_of_its_solid() {
+    let Mesh { vertices, faces } = shapes::block([0.0; 3], [2.0; 3]);
+    let inside_out: Vec<Vec<u32>> =
+        faces.iter().map(|f| f.iter().rev().copied().collect()).collect();
+    for facets in [&faces[..], &faces[..5], &inside_out, &[faces[0].clone(), faces[0].clone()]] {
+        let closed = Solid::from_mesh(&vertices, facets).map(|solid| solid.report().clone());
+        assert_eq!(SolidReport::from_mesh(&vertices, facets), closed);
+        let open = Solid::from_open_mesh(&vertices, facets).map(|solid| solid.report().clone());
+        assert_eq!(SolidReport::from_open_mesh(&vertices, facets), open);
+    }
 }
 
 #[test]

@@ -16,6 +16,7 @@ use std::fmt;
 use glam::DVec3;
 
 use super::bound::{Reason, are_separated, dismissal_reason, is_beyond_side};
+use super::hulls::is_plane_between;
 use super::inside;
 use super::leaf::FacetDifference;
 use super::projected::Projected;
@@ -73,8 +74,15 @@ impl fmt::Display for Overlap {
 /// Finds a place where the interiors intersect or an open shell passes through the other body. With a minimum gap,
 /// finds two facets that are certainly nearer than the gap, or a shell inside the other body. `None` if there is no
 /// such place.
+///
+/// A plane between the hulls of convex bodies replaces the search.
 #[inline]
 pub fn find_overlap(scene: &PairFrame, steps: &mut SolidSteps) -> Option<Overlap> {
+    let [a, b] = Projected::root_bounds(scene);
+    if never_overlap(scene, &a, &b) || is_plane_between(scene) {
+        steps.count_pair(Some(Reason::Disjoint));
+        return None;
+    }
     find_overlap_with(scene, &mut |entry| steps.count_pair(entry))
 }
 
@@ -185,7 +193,7 @@ pub(crate) fn leaves_apart(scene: &PairFrame, a: &Node, b: &Node) -> bool {
 pub(crate) fn find_contact(scene: &PairFrame, steps: &mut SolidSteps) -> Option<Overlap> {
     let [a, b] = Projected::root_bounds(scene);
     let mut count = |entry| steps.count_pair(entry);
-    if are_separated(scene, &a, &b) {
+    if are_separated(scene, &a, &b) || is_plane_between(scene) {
         count(Some(Reason::Disjoint));
         return None;
     }

@@ -18,8 +18,6 @@ use crate::body::Solid;
 use crate::solve::hulls::{HullPair, Surface};
 use colltrans_convex::answer::{Contact, Outcome};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::setting::Setting;
-use colltrans_convex::solve::options::Options;
 pub(super) use contact_facets::ContactGuess;
 
 /// Convex hulls of the two solids of a query, and their cast.
@@ -40,12 +38,10 @@ impl<'a> Hulls<'a> {
         if core_gap(cast) > 0.0 || options.overlapping == Some(true) {
             return None;
         }
-        let HullPair { surfaces, hulls } = HullPair::of_convex(&cast.setting.bodies)?;
-        let Setting { direction, length, unit, .. } = cast.setting;
-        let setting = Setting { bodies: hulls, direction, length, unit };
-        let cast = Cast { setting, options: Options::default() };
+        let pair = HullPair::of_convex(&cast.setting.bodies)?;
+        let cast = pair.cast(&cast.setting);
         Some(Self {
-            bodies: surfaces,
+            bodies: pair.surfaces,
             cast,
             first_outcome: cast.first_contact().ok()?,
             last_contact: OnceCell::new(),

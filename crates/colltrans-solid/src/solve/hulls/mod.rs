@@ -1,8 +1,8 @@
 //! Convex solids with their hulls.
 //!
-//! [`HullPair`] is the one place where two solids become two convex bodies: casts and distances ask it first.
-//! The hulls guess planes and facets. Planes are proven over the vertices of the solids ([`Surface::max_height`]). The
-//! hull of a solid is computed on the first request and stored with it.
+//! [`HullPair`] is the one place where two solids become two convex bodies: casts, distances and tests for a common
+//! point use it first. The hulls guess planes and facets. Planes are proven over the vertices of the solids
+//! ([`Surface::max_height`]). The hull of a solid is computed on the first request and stored with it.
 //!
 //! - [`surface`]: facets around a vertex, at an edge and at a point of a convex solid.
 //! - [`nearest`]: separating planes and the nearest facets.
@@ -14,8 +14,10 @@ use glam::DVec3;
 
 use crate::body::Solid;
 use colltrans_convex::body::{ConvexPolyhedron, DerivedData};
-use colltrans_convex::setting::TwoBodies;
-pub(crate) use nearest::{nearest_facets, plane_margin};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::setting::{Setting, TwoBodies};
+use colltrans_convex::solve::options::Options;
+pub(crate) use nearest::{is_plane_between, nearest_facets, plane_margin};
 pub use surface::{FacetGroup, NEAR_NOISES, Surface, SurfacePoint};
 
 /// Maximum height of a vertex above the plane of an adjacent facet in a body that counts as convex, as a share of
@@ -37,6 +39,13 @@ impl<'a> HullPair<'a> {
         let surfaces = [Surface::of_convex(solids.moving)?, Surface::of_convex(solids.fixed)?];
         let hulls = solids.with_bodies(surfaces.map(|surface| &surface.body.hull));
         Some(Self { surfaces, hulls })
+    }
+
+    /// Returns the cast of the hulls with the direction of a query.
+    pub(crate) fn cast(&self, setting: &Setting<'a, Solid>) -> Cast<'a> {
+        let Setting { direction, length, unit, .. } = *setting;
+        let setting = Setting { bodies: self.hulls, direction, length, unit };
+        Cast { setting, options: Options::default() }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::solve::nearest::search::{max_height_of_node, nearest_plane_bound};
 use crate::solve::nearest::{NearestPoints, triangle};
 use crate::solve::scene::{PairFrame, PlacedBody};
 use crate::solve::separate::{HEIGHTS, max_height_along};
-use colltrans_convex::answer::Distance;
+use colltrans_convex::answer::{Grazing, Intersection, Outcome};
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::VertexPair;
 
@@ -32,31 +32,18 @@ pub(crate) struct NearestFacets {
     pub(crate) leaves: u32,
 }
 
-/// A plane between two convex bodies, orthogonal to the shortest line between their hulls.
-struct HullPlane {
-    normal: DVec3,
-    /// Lower bound of the distance of the offset bodies along the normal; positive.
-    margin: f64,
-    hulls: Distance,
-}
-
-impl HullPlane {
-    /// Computes the plane of two bodies as they are offset in `scene`. Returns `None` if it does not certainly separate
-    /// them.
-    fn between(scene: &PairFrame, pair: &HullPair) -> Option<Self> {
-        let hulls = Pair { bodies: pair.hulls }.distance().ok()?;
-        let normal = hulls.normal?;
-        let support = |k: usize, side: &PlacedBody, normal: DVec3| {
-            pair.surfaces[k].body.hull.support(side.matrix.transpose() * normal).index() as u32
-        };
-        let highest = VertexPair::from_indices(
-            support(0, &scene.moving, normal),
-            support(1, &scene.fixed, -normal),
-        );
-        // One noise covers the length of the normal.
-        let margin = plane_margin(scene, &pair.surfaces, normal, highest) - scene.noise;
-        (margin > 0.0).then_some(Self { normal, margin, hulls })
-    }
+/// Computes a lower bound of the distance of two bodies as they are offset in `scene`, along a unit normal. It is not
+/// positive if the plane does not certainly separate them.
+fn margin_along(scene: &PairFrame, pair: &HullPair, normal: DVec3) -> f64 {
+    let support = |k: usize, side: &PlacedBody, normal: DVec3| {
+        pair.surfaces[k].body.hull.support(side.matrix.transpose() * normal).index() as u32
+    };
+    let highest = VertexPair::from_indices(
+        support(0, &scene.moving, normal),
+        support(1, &scene.fixed, -normal),
+    );
+    // One noise covers the length of the normal.
+    plane_margin(scene, &pair.surfaces, normal, highest) - scene.noise
 }
 
 /// Computes a lower bound of the distance of the offset bodies along a normal. It is not positive if no plane with that
@@ -77,12 +64,32 @@ pub(crate) fn plane_margin(
     normal.dot(scene.fixed.offset[0]) - fixed - moving - HEIGHTS * scene.noise
 }
 
+/// Checks whether a plane certainly separates the offset bodies of a scene by more than the minimum gap: that of a cast
+/// of their hulls along the line through their centres. Returns `false` if a body is not convex.
+pub(crate) fn is_plane_between(scene: &PairFrame) -> bool {
+    let separated = |pair: HullPair| {
+        let normal = match pair.cast(&scene.setting).intersects() {
+            Ok(Intersection { meets: false, evidence }) => match evidence.outcome {
+                Outcome::Separated(apart) => apart.certificate.normal,
+                Outcome::Contact(contact) | Outcome::Grazing(Grazing { contact, .. }) => {
+                    contact.certificate.normal
+                }
+            },
+            _ => return false,
+        };
+        margin_along(scene, &pair, normal) > scene.min_gap()
+    };
+    HullPair::of_convex(&scene.setting.bodies).is_some_and(separated)
+}
+
 /// Finds the nearest facets of two solids in the frame of `scene`, without an offset. Returns `None` if a solid is not
 /// convex, if the solids may meet, or if the bounds differ by more than rounding. If `prove` is set, also `None` if the
 /// plane between the facets proves less.
 pub(crate) fn nearest_facets(scene: &PairFrame, prove: bool) -> Option<NearestFacets> {
     let pair = HullPair::of_convex(&scene.setting.bodies)?;
-    let HullPlane { normal, margin: lower, hulls: found } = HullPlane::between(scene, &pair)?;
+    let found = Pair { bodies: pair.hulls }.distance().ok()?;
+    let normal = found.normal?;
+    let lower = Some(margin_along(scene, &pair, normal)).filter(|margin| *margin > 0.0)?;
     let sides = [&scene.moving, &scene.fixed];
     let weights = found.near.weights;
     let heaviest = (1..4).fold(0, |best, k| if weights[k] > weights[best] { k } else { best });

@@ -13,7 +13,7 @@ const FIRST_DISTANCE: f64 = 4.0 * f64::EPSILON;
 const MAX_SEPARATED_TIME: f64 = 1e-6;
 
 /// Width of bounds below which the search stops.
-const MIN_WIDTH: f64 = 1e-12;
+pub(super) const MIN_WIDTH: f64 = 1e-12;
 
 /// State of two bodies at one time.
 pub(super) enum ContactState<M> {

@@ -173,7 +173,7 @@ impl<'a, B: VertexHull> RelativeMotion<'a> for Span<'a, B> {
 
     fn arc_vertex_count(&self) -> usize {
         let turning = |which: usize| self.piece(which).rate != 0.0;
-        let corners = |which: usize| self.body(which).hull_vertices().len();
+        let corners = |which: usize| self.body(which).vertex_count();
         (0..2).filter(|which| turning(*which)).map(corners).sum()
     }
 

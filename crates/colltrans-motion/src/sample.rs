@@ -12,7 +12,9 @@ use colltrans_convex::answer::{Distance, PlaneGap};
 use colltrans_convex::body::{ConvexPolyhedron, VertexHull};
 use colltrans_convex::pair::{Pair, distance_from};
 use colltrans_convex::setting::{TwoBodies, VertexPair};
-use colltrans_convex::solve::nearest::{Difference, NearestPairs, nearest_points_within_share};
+use colltrans_convex::solve::nearest::{
+    DescentResult, Difference, NearestPairs, nearest_points_within_share,
+};
 
 /// Share of the size of the bodies. A distance beyond this share is computed only roughly, because an exact one is
 /// needed only near a contact.
@@ -57,6 +59,8 @@ pub(super) trait Sampler<B: VertexHull> {
     /// Method that finds support points.
     type SupportSearch: SupportSearch<B>;
     const SUPPORT_SEARCH: Self::SupportSearch;
+    /// Depth, in floors, at which a contact is first tested for a proof; at least 1.
+    const PROVING_DEPTH: f64 = 1.0;
 
     /// Computes the plane between the bodies at a time.
     fn sample<'a, C>(&mut self, motion: &C, time: f64) -> Sample<'a, C::Moved, B>
@@ -92,20 +96,14 @@ impl Sampler<ConvexPolyhedron> for ConvexSampler {
         let difference = Difference::new(&at.bodies);
         let [_, between_cores] = at.bodies.core_gap_bounds(min_gap.max(0.0));
         let beyond = between_cores + FAR_SHARE * difference.bodies.size();
-        let found = nearest_points_within_share(&difference, &self.pairs, ROUGH_ACCURACY, beyond);
-        self.steps.looks += 1;
-        self.steps.supports += found.supports;
-        let pairs = found.start_pairs();
-        if !pairs.is_empty() {
-            self.pairs = pairs;
-        }
+        let found = self.nearest_points(&difference, beyond);
         let plane = found.gap_plane(&difference).map(|plane| plane.gap);
         let (plane, points) = match plane {
             Some(plane) if plane.gap > 0.0 || min_gap >= 0.0 => {
                 let gap = at.bodies.less_radii(plane.gap);
                 (Some(PlaneGap { gap, ..plane }), found.weighted_pairs_and_weights(&difference))
             }
-            _ if min_gap < 0.0 => self.least_overlap_plane(&difference),
+            _ if min_gap < 0.0 => self.least_overlap_plane(&difference, f64::INFINITY),
             _ => (None, found.weighted_pairs_and_weights(&difference)),
         };
         let floor = 4.0 * difference.noise.point_error()
@@ -155,10 +153,49 @@ impl ConvexSampler {
         self.pairs = NearestPairs::default();
     }
 
-    /// Computes the plane of least overlap, with the negative depth as its gap, and a vertex pair in it.
-    fn least_overlap_plane(&mut self, difference: &Difference) -> (Option<PlaneGap>, MeanPair) {
+    /// Computes the nearest points of two bodies: exactly if they are at most the length `beyond` apart, else roughly.
+    fn nearest_points(&mut self, difference: &Difference, beyond: f64) -> DescentResult {
+        let found = nearest_points_within_share(difference, &self.pairs, ROUGH_ACCURACY, beyond);
+        self.steps.looks += 1;
+        self.steps.supports += found.supports;
+        let pairs = found.start_pairs();
+        if !pairs.is_empty() {
+            self.pairs = pairs;
+        }
+        found
+    }
+
+    /// Computes the normal of a plane between two bodies, and their nearest points in the frames of the bodies. Returns
+    /// `None` if no plane separates them. Distances far above `core_gap` are computed roughly.
+    pub(super) fn plane_between(
+        &mut self,
+        bodies: &TwoBodies,
+        core_gap: f64,
+    ) -> Option<(DVec3, [DVec3; 2])> {
+        let difference = Difference::new(bodies);
+        let found = self.nearest_points(&difference, core_gap + FAR_SHARE * bodies.size());
+        let plane = found.gap_plane(&difference).filter(|plane| plane.gap.gap > 0.0)?;
+        let (pairs, weights) = found.weighted_pairs_and_weights(&difference);
+        Some((plane.gap.normal, bodies.weighted_points(&pairs, &weights)))
+    }
+
+    /// Computes the normal of the least overlap of two bodies. Returns `None` if they overlap by more than
+    /// `most_depth`.
+    pub(super) fn shallow_normal(&mut self, bodies: &TwoBodies, most_depth: f64) -> Option<DVec3> {
+        let (plane, _) = self.least_overlap_plane(&Difference::new(bodies), most_depth);
+        let plane = plane.filter(|plane| -plane.gap <= 2.0 * most_depth)?;
+        Some(plane.normal)
+    }
+
+    /// Computes the plane of least overlap, with the negative depth as its gap, and a vertex pair in it. Ends as soon
+    /// as the depth exceeds `enough`.
+    fn least_overlap_plane(
+        &mut self,
+        difference: &Difference,
+        enough: f64,
+    ) -> (Option<PlaneGap>, MeanPair) {
         let pair = Pair { bodies: *difference.bodies };
-        let plane = pair.depth().ok().map(|depth| {
+        let plane = pair.depth_until(enough).ok().map(|depth| {
             self.steps.supports += depth.steps.supports;
             PlaneGap { normal: -depth.direction, gap: -depth.upper }
         });

@@ -386,11 +386,11 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
         if self.is_contact_tested || !self.is_front_near_contact() {
             return None;
         }
-        let width = self.overshoot_step();
+        let width = self.overshoot_step() * L::PROVING_DEPTH;
         let time = self.front.time() + width;
         if !(time > self.front.time()
             && time < self.end_time
-            && width <= MAX_WIDTH_FLOOR_TIMES * self.floor_time())
+            && width <= MAX_WIDTH_FLOOR_TIMES * L::PROVING_DEPTH * self.floor_time())
         {
             return None;
         }
@@ -489,7 +489,10 @@ impl<'a, C: RelativeMotion<'a>, L: Sampler<C::Body>> SpanSearch<'_, 'a, C, L> {
         let floor_time = self.floor_time();
         let ulp = 2.0 * f64::EPSILON * time.max(f64::EPSILON);
         let first = if floor_time.is_finite() { floor_time.max(ulp) } else { ulp };
-        for k in -1..MAX_DOUBLINGS {
+        let first = first * L::PROVING_DEPTH;
+        // A contact at `time` itself is proven only if a depth of about one floor suffices.
+        let begin = if L::PROVING_DEPTH > 1.0 { 0 } else { -1 };
+        for k in begin..MAX_DOUBLINGS {
             let later = if k < 0 { time } else { time + first * 2.0_f64.powi(k) };
             if later > self.motion.time_range()[1] {
                 break;

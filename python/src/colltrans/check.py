@@ -2892,6 +2892,17 @@ class Parts:
             return list(self.corners[self.facet[node]])
         return box_corners(self.bounds[node])
 
+    def below(self, node: int) -> list[Vector]:
+        """Returns the corners of all facets of a node, each once."""
+        open_, corners = [node], dict[Vector, None]()
+        while open_:
+            at = open_.pop()
+            if self.facet[at] >= 0:
+                corners.update(dict.fromkeys(self.corners[self.facet[at]]))
+            else:
+                open_ += self.children[at]
+        return list(corners)
+
     def middle(self, node: int) -> Vector:
         points = self.points(node)
         total = _ZERO
@@ -2916,6 +2927,12 @@ class Cover:
     def at(self, nodes: tuple[int, int]) -> Span:
         p, q = self.parts
         moving, fixed = p.spin(nodes[0], self.span.moving), q.spin(nodes[1], self.span.fixed)
+        return replace(self.span, moving=moving, fixed=fixed)
+
+    def whole(self, nodes: tuple[int, int]) -> Span:
+        """Returns the span of all corners of the facets of two nodes."""
+        p, q = (part.below(node) for part, node in zip(self.parts, nodes, strict=True))
+        moving, fixed = self.span.moving.with_points(p), self.span.fixed.with_points(q)
         return replace(self.span, moving=moving, fixed=fixed)
 
     def check(self, letters: str, lists: list[Any], until: Fraction) -> None:
@@ -2943,11 +2960,10 @@ class Cover:
                 stack += [(pairs[1], a, b), (pairs[0], a, b)]
             elif letter == "L":
                 planes = [Plane.read(plane) for plane in next(rest, [])]
-                facets = all(self.parts[k].facet[nodes[k]] >= 0 for k in (0, 1))
                 ends = (planes[0].time, planes[-1].time) if planes else None
-                if not facets or ends != (a, b):
+                if ends != (a, b):
                     raise RefusedError(f"entry {number_} has no planes for its time")
-                chain(replace(self.at(nodes), begin=a, end=b), planes)
+                chain(replace(self.whole(nodes), begin=a, end=b), planes)
             elif not self.parted(letter, nodes, a, b):
                 raise RefusedError(
                     f"entry {number_}: no plane {letter!r} separates the parts throughout"

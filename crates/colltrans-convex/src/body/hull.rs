@@ -9,6 +9,12 @@ pub trait VertexHull {
     /// Returns the vertices, in the body frame; at least one.
     fn hull_vertices(&self) -> &[DVec3];
 
+    /// Returns the number of vertices. Bodies that compute their vertices on the first request override it.
+    #[inline]
+    fn vertex_count(&self) -> usize {
+        self.hull_vertices().len()
+    }
+
     /// Returns an upper bound of the distances of the vertices from the origin of the body frame.
     fn reach(&self) -> f64;
 

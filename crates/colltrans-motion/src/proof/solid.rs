@@ -135,7 +135,7 @@ pub(crate) enum Entry {
     Split(u8),
     /// One plane separates the parts throughout.
     Separated(PlaneName),
-    /// A list of planes separates two facets.
+    /// A list of planes separates all facets of the parts.
     PlaneList,
 }
 
@@ -157,6 +157,14 @@ pub(crate) enum PlaneName {
 pub(crate) struct RecordedProof {
     pub(crate) entries: Vec<Entry>,
     pub(crate) lists: Vec<Vec<TimedPlane>>,
+}
+
+impl RecordedProof {
+    /// Checks whether one list of planes for both bodies proves all times up to `until`.
+    pub(crate) fn is_list_until(&self, until: f64) -> bool {
+        let reached = |planes: &Vec<TimedPlane>| planes.last().map(|plane| plane.time);
+        self.entries == [Entry::PlaneList] && self.lists.first().and_then(reached) == Some(until)
+    }
 }
 
 impl SpanProof {

@@ -109,7 +109,7 @@ impl MotionCast<'_, Solid> {
         let facets = [0, 1].map(|k| span.body(k).facet(found.triangles[k]));
         let part = span.part_span(facets.each_ref(), [span.from, span.to]);
         let instant = part.instant_at(found.lower);
-        let [f, g] = facets::placed_corners(&instant);
+        let [f, g] = facets::placed_corners(&instant.bodies);
         let near = triangle::nearest_points(&f, &g, instant.bodies.noise().point_error());
         // Change of the distance of the two points of contact due to the offset.
         let nominal = [0, 1].map(|k| {

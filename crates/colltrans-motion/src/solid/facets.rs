@@ -18,10 +18,11 @@ use super::super::proof::FacetContactProof;
 use super::super::relative_motion::RelativeMotion;
 use super::super::sample::{Sample, Sampler, closing_speed};
 use super::super::search::{SpanEnd, SpanResult, prove_span};
-use super::super::span::{Instant, Span};
+use super::super::span::Span;
 use super::tree::Facet;
 use colltrans_convex::answer::are_weights;
 use colltrans_convex::body::VertexHull;
+use colltrans_convex::setting::TwoBodies;
 use colltrans_kernel::pose::MAX_STRETCH;
 use colltrans_solid::solve::nearest::triangle::{self, Corners, GAP_NOISES, LENGTH_NOISES};
 
@@ -32,8 +33,7 @@ pub(super) struct FacetSampler {
 }
 
 /// Returns the corners of both facets in the setting frame.
-pub(super) fn placed_corners<M>(at: &Instant<'_, M, Facet>) -> [Corners; 2] {
-    let bodies = &at.bodies;
+pub(super) fn placed_corners(bodies: &TwoBodies<'_, Facet>) -> [Corners; 2] {
     let [f, g] = [bodies.moving.corners, bodies.fixed.corners];
     [f.map(|v| bodies.moving_matrix * v), g.map(|v| bodies.fixed_matrix * v + bodies.offset)]
 }
@@ -50,7 +50,7 @@ impl Sampler<Facet> for FacetSampler {
         self.steps.looks += 1;
         let at = motion.instant_at(time);
         let noise = at.bodies.noise().point_error();
-        let [f, g] = placed_corners(&at);
+        let [f, g] = placed_corners(&at.bodies);
         let found = triangle::nearest_points(&f, &g, noise);
         let gap = at.bodies.less_radii(found.gap - GAP_NOISES * noise)
             - motion.min_gap()
@@ -70,40 +70,48 @@ impl Sampler<Facet> for FacetSampler {
         C: RelativeMotion<'a, Body = Facet>,
     {
         self.steps.looks += 1;
-        let at = motion.instant_at(time);
-        if least_core_gap(motion, &at) > 0.0 {
-            let [f, g] = placed_corners(&at);
-            let weights = triangle::nearest_points(&f, &g, at.bodies.noise().point_error()).weights;
-            let met = FacetContactProof::Near { weights: weights.map(|w| w.to_array()) };
-            return is_contact_proven(motion, &at, met).then_some(met);
-        }
-        let edges = [true, false].into_iter().flat_map(|moving| (0..3).map(move |k| (moving, k)));
-        edges
-            .map(|(moving, edge)| FacetContactProof::Crossing { moving, edge })
-            .find(|met| is_contact_proven(motion, &at, *met))
+        let bodies = motion.instant_at(time).bodies;
+        prove_contact(&bodies, [motion.min_gap(), motion.position_error()])
     }
 }
 
-/// Returns the minimum gap of the cores of two facets, rounded down: that of the facets plus their radii.
-fn least_core_gap<'a, C: RelativeMotion<'a, Body = Facet>>(
-    motion: &C,
-    at: &Instant<'a, C::Moved, Facet>,
-) -> f64 {
-    at.bodies.core_gap_bounds(motion.min_gap())[0]
+/// Proves that two facets meet, for a minimum gap and an error of their places. Returns `None` if that is not proven.
+pub(super) fn prove_contact(
+    bodies: &TwoBodies<'_, Facet>,
+    gap_and_error: [f64; 2],
+) -> Option<FacetContactProof> {
+    if bodies.core_gap_bounds(gap_and_error[0])[0] > 0.0 {
+        let [f, g] = placed_corners(bodies);
+        let weights = triangle::nearest_points(&f, &g, bodies.noise().point_error()).weights;
+        let met = FacetContactProof::Near { weights: weights.map(|w| w.to_array()) };
+        return is_contact_proven(bodies, gap_and_error, met).then_some(met);
+    }
+    let off = bodies.noise().point_error() + gap_and_error[1];
+    let [f, g] = placed_corners(bodies);
+    [(true, f, g), (false, g, f)].into_iter().find_map(|(moving, own, other)| {
+        let sides = own.map(|corner| side_of_facet(corner, other, off));
+        let crosses = |edge: &u8| {
+            let ends = [*edge as usize, (*edge as usize + 1) % 3];
+            let [below, above] = ends.map(|k| sides[k]);
+            are_opposite(below, above) && passes_inside(ends.map(|k| own[k]), other, off)
+        };
+        (0..3).find(crosses).map(|edge| FacetContactProof::Crossing { moving, edge })
+    })
 }
 
-/// Checks whether two facets are proven to meet at an instant, by the given proof.
-pub(super) fn is_contact_proven<'a, C: RelativeMotion<'a, Body = Facet>>(
-    motion: &C,
-    at: &Instant<'a, C::Moved, Facet>,
+/// Checks whether two facets are proven to meet by the given proof, for a minimum gap and an error of their places.
+pub(super) fn is_contact_proven(
+    bodies: &TwoBodies<'_, Facet>,
+    [min_gap, error]: [f64; 2],
     met: FacetContactProof,
 ) -> bool {
-    let (noise, [f, g]) = (at.bodies.noise().point_error(), placed_corners(at));
-    let core_gap = least_core_gap(motion, at);
+    let (noise, [f, g]) = (bodies.noise().point_error(), placed_corners(bodies));
+    // That of the facets plus their radii, rounded down.
+    let core_gap = bodies.core_gap_bounds(min_gap)[0];
     match met {
         FacetContactProof::Crossing { moving, edge } => {
             let (own, other) = if moving { (f, g) } else { (g, f) };
-            let (k, off) = (edge as usize, noise + motion.position_error());
+            let (k, off) = (edge as usize, noise + error);
             k < 3
                 && core_gap == 0.0
                 && segment_crosses_triangle(own[k], own[(k + 1) % 3], other, off)
@@ -111,7 +119,7 @@ pub(super) fn is_contact_proven<'a, C: RelativeMotion<'a, Body = Facet>>(
         FacetContactProof::Near { weights } => {
             let length = triangle::weighted_distance(&f, &g, weights.map(DVec3::from_array));
             weights.iter().all(|weights| are_weights(&weights[..]))
-                && length + LENGTH_NOISES * noise + motion.position_error() <= core_gap
+                && length + LENGTH_NOISES * noise + error <= core_gap
         }
         // These proofs are about whole solids, not about two facets.
         FacetContactProof::Inside { .. } | FacetContactProof::Contained { .. } => false,
@@ -119,11 +127,24 @@ pub(super) fn is_contact_proven<'a, C: RelativeMotion<'a, Body = Facet>>(
 }
 
 /// Checks whether a segment passes through a triangle for all positions of its points within `e`.
-fn segment_crosses_triangle(p: DVec3, q: DVec3, [a, b, c]: Corners, e: f64) -> bool {
-    let [below, above] = [p, q].map(|end| volume_sign([b - a, c - a, end - a], e));
-    if below == 0 || below + above != 0 {
-        return false;
-    }
+fn segment_crosses_triangle(p: DVec3, q: DVec3, triangle: Corners, e: f64) -> bool {
+    let [below, above] = [p, q].map(|end| side_of_facet(end, triangle, e));
+    are_opposite(below, above) && passes_inside([p, q], triangle, e)
+}
+
+/// Returns the side of the plane of a triangle on which a point lies, for all positions within `e`; 0 if that is not
+/// certain.
+fn side_of_facet(point: DVec3, [a, b, c]: Corners, e: f64) -> i32 {
+    volume_sign([b - a, c - a, point - a], e)
+}
+
+/// Checks whether two sides are certain and opposite.
+fn are_opposite(below: i32, above: i32) -> bool {
+    below != 0 && below + above == 0
+}
+
+/// Checks whether the line through a segment passes through a triangle for all positions of its points within `e`.
+fn passes_inside([p, q]: [DVec3; 2], [a, b, c]: Corners, e: f64) -> bool {
     let relative_velocity = q - p;
     let turns =
         [(a, b), (b, c), (c, a)].map(|(u, v)| volume_sign([relative_velocity, u - p, v - p], e));
@@ -242,7 +263,7 @@ fn face_each_other(
     sampler: &mut FacetSampler,
 ) -> bool {
     let at = span.instant_at(time);
-    let [f, g] = placed_corners(&at);
+    let [f, g] = placed_corners(&at.bodies);
     sampler.steps.looks += 1;
     let weights = triangle::nearest_points(&f, &g, at.bodies.noise().point_error()).weights;
     let bodies = [at.bodies.moving.corners, at.bodies.fixed.corners];

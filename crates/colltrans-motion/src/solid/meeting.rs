@@ -39,7 +39,7 @@ pub(super) fn contact_state_at(
             (facets, nodes.map(|node| node.content))
         {
             let span = frame.span.part_span([f, g], [frame.span.from, frame.span.to]);
-            let [own, other] = placed_corners(&span.instant_at(time));
+            let [own, other] = placed_corners(&span.instant_at(time).bodies);
             guesses.add_facets([s, t], [&own, &other], off);
             if is_separated {
                 continue;

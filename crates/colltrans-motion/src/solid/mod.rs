@@ -2,15 +2,16 @@
 //!
 //! Both solids are shrunk by half of a tolerance, as for casts, so that a part that fits into another one can rotate in
 //! it. Of rounded solids the cores are shrunk. An overlap at the start, including containment, is decided exactly.
-//! Afterwards the surfaces must meet before one solid can contain the other. The search finds the first contact of facets
-//! in both bounding volume trees and in time.
+//! Afterwards the surfaces must meet before one solid can contain the other. The search finds the first contact of
+//! facets in both bounding volume trees and in time.
 //!
 //! Each module uses only those before it: `tree` (a shrunk solid), `window` (one plane for two parts in an interval),
-//! `facets` (two facets as convex bodies), `inside` (a point inside both solids). `search`, `meeting` (proves contact
-//! at a time), `verify` and `clearance` use them.
+//! `facets` (two facets as convex bodies), `inside` (a point inside both solids). `search`, `hulls` (two convex
+//! solids), `meeting` (proves contact at a time), `verify` and `clearance` use them.
 
 mod clearance;
 mod facets;
+mod hulls;
 pub(super) mod inside;
 mod meeting;
 mod search;
@@ -21,6 +22,7 @@ mod window;
 use glam::DVec3;
 
 use self::facets::FacetSampler;
+use self::hulls::search_convex;
 use self::meeting::contact_state_at;
 use self::search::{EarliestContact, SearchMode, TreeSearch};
 #[cfg(feature = "json")]
@@ -37,13 +39,12 @@ use colltrans_convex::body::Features;
 use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::setting::{Setting, check_min_gap};
-use colltrans_solid::SolidScene;
-use colltrans_solid::SolidSteps;
 use colltrans_solid::body::{AsSolid, Solid};
 use colltrans_solid::cast::{SolidOptions, StartProof};
 use colltrans_solid::solve::nearest::{NearestPoints, triangle, weighted_points};
 use colltrans_solid::solve::overlap;
 use colltrans_solid::solve::scene::PairFrame;
+use colltrans_solid::{SolidCast, SolidScene, SolidSteps};
 
 /// Maximum number of attempts to prove the time up to a contact, each with a slightly earlier end.
 const MAX_PROOF_ATTEMPTS: i32 = 40;
@@ -54,8 +55,8 @@ impl<'a> MotionCast<'a, Solid> {
     /// Builds the cast of two bodies as solids. Each of them is a solid or a convex polyhedron.
     ///
     /// A point or a segment is accepted. Its contact with a closed solid has an upper bound: a time at which one of its
-    /// points is inside (`FacetContactProof::Contained`), or at which a segment passes through a facet. The contact of a
-    /// point that passes through an open shell has no upper bound, and is [`MotionOutcome::Grazing`].
+    /// points is inside (`FacetContactProof::Contained`), or at which a segment passes through a facet. The contact of
+    /// a point that passes through an open shell has no upper bound, and is [`MotionOutcome::Grazing`].
     ///
     /// # Errors
     /// Returns an error for a convex body whose facets [`Solid::from_mesh`] rejects.
@@ -120,8 +121,8 @@ impl<'a> MotionCast<'a, Solid> {
     /// Returns an error if no tolerance was set, and the default leaves nothing of a thin solid or exceeds the size of
     /// the bodies ([`QueryError::PositionError`]).
     pub fn first_contact(&self) -> Result<MotionOutcome<()>, QueryError> {
-        let tolerance = self.tolerance();
         let (start, mut steps) = (self.start_cast()?, MotionSteps::default());
+        let tolerance = start.tolerance();
         if overlap::find_overlap(&start.checked_query_scene()?, &mut SolidSteps::default())
             .is_some()
         {
@@ -144,8 +145,8 @@ impl<'a> MotionCast<'a, Solid> {
     /// # Errors
     /// Returns the errors of [`Self::first_contact`].
     pub fn certified_first_contact(&self) -> Result<MotionOutcome<SolidMotionProof>, QueryError> {
-        let tolerance = self.tolerance();
         let cast = self.start_cast()?;
+        let tolerance = cast.tolerance();
         let start = cast.prove_start(&cast.checked_query_scene()?, &mut SolidSteps::default());
         let mut proof = SolidMotionProof { tolerance, start, spans: Vec::new(), meeting: None };
         let mut steps = MotionSteps::default();
@@ -160,8 +161,14 @@ impl<'a> MotionCast<'a, Solid> {
                 continue;
             };
             let mut found = Self::with_proven_contact(&span, found, &mut steps);
-            let (lower, recorded) = prove_until(&span, found.lower, &mut steps);
-            found.lower = lower;
+            let recorded = if recorded.is_list_until(found.lower) {
+                recorded
+            } else {
+                let (lower, recorded) = prove_until(&span, found.lower, &mut steps);
+                found.lower = lower;
+                recorded
+            };
+            let lower = found.lower;
             proof.spans.push(SpanProof::new(lower, recorded));
             return Ok(self.contact_outcome(&span, &found, steps, |meeting| SolidMotionProof {
                 meeting,
@@ -182,13 +189,12 @@ impl<'a> MotionCast<'a, Solid> {
 
     /// Returns a cast of the solids at their start poses, with an arbitrary direction.
     fn start_cast(&self) -> Result<Cast<'a, Solid>, QueryError> {
-        let bodies = self.bodies();
+        let (bodies, tolerance) = (self.bodies(), self.tolerance());
         if self.tolerance.is_none() {
-            check_accuracy(bodies, self.tolerance())?;
+            check_accuracy(bodies, tolerance)?;
         }
         let [p, q] = self.motions().map(|motion| motion.pieces()[0].start_pose);
-        let options =
-            SolidOptions::default().with_tolerance(self.tolerance()).with_min_gap(self.min_gap);
+        let options = SolidOptions::default().with_tolerance(tolerance).with_min_gap(self.min_gap);
         Cast::new(bodies[0].at(p), bodies[1].at(q), DVec3::Z)?.with_options(options)
     }
 
@@ -217,6 +223,9 @@ impl<'a> MotionCast<'a, Solid> {
         mut found: EarliestContact,
         steps: &mut MotionSteps,
     ) -> EarliestContact {
+        if found.is_refined {
+            return found;
+        }
         let known_contact = found.met.map(|(time, ..)| time);
         let (frame, mut sampler) = (SpanFrame::new(span), FacetSampler::default());
         let state = |time| contact_state_at(&frame, time, &mut sampler);
@@ -253,7 +262,7 @@ impl<'a> MotionCast<'a, Solid> {
         // The bounds do not depend on the rest. The facets are those of the shrunk solids, and so is the normal.
         let [f, g] = [0, 1].map(|k| span.body(k).facet(found.triangles[k]));
         let at = span.part_span([&f, &g], [span.from, span.to]).instant_at(lower);
-        let [f, g] = facets::placed_corners(&at);
+        let [f, g] = facets::placed_corners(&at.bodies);
         let nearest = triangle::nearest_points(&f, &g, at.bodies.noise().point_error());
         let (spot, scene) = (
             NearestPoints { triangles: found.triangles, nearest },
@@ -290,12 +299,16 @@ impl<'a> MotionCast<'a, Solid> {
     }
 }
 
-/// Searches a span. Returns the earliest contact, if any, and the entries of its proof in [`SearchMode::Recording`].
-fn search_span(
-    span: &Span<SolidTree>,
+/// Searches a span: two convex solids by their hulls, others by their trees. Returns the earliest contact, if any, and
+/// the entries of its proof in [`SearchMode::Recording`].
+fn search_span<'a>(
+    span: &Span<'a, SolidTree<'a>>,
     mode: SearchMode,
     steps: &mut MotionSteps,
 ) -> (Option<EarliestContact>, RecordedProof) {
+    if let Some(result) = search_convex(span, mode, steps) {
+        return result;
+    }
     let mut search = TreeSearch::new(SpanFrame::new(span), mode);
     search.process_entries();
     *steps += search.steps;

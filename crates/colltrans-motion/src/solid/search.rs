@@ -60,6 +60,19 @@ pub(super) struct EarliestContact {
     pub(super) is_open: bool,
     /// Time of a proven contact, its facets and the proof.
     pub(super) met: Option<(f64, [u32; 2], FacetContactProof)>,
+    /// Whether that time is as near to `lower` as the search can prove.
+    pub(super) is_refined: bool,
+}
+
+impl EarliestContact {
+    fn new(
+        lower: f64,
+        triangles: [u32; 2],
+        is_open: bool,
+        met: Option<(f64, [u32; 2], FacetContactProof)>,
+    ) -> Self {
+        Self { lower, triangles, is_open, met, is_refined: false }
+    }
 }
 
 /// Purpose of a search.
@@ -202,7 +215,7 @@ impl<'s, 'a> TreeSearch<'s, 'a> {
                 find_later_contact(&span, sided, &mut sampler)
             {
                 let met = met.map(|(time, met)| (time, triangles, met));
-                self.store_contact(EarliestContact { lower, triangles, is_open, met });
+                self.store_contact(EarliestContact::new(lower, triangles, is_open, met));
             }
             self.steps += sampler.steps;
             return;
@@ -219,13 +232,13 @@ impl<'s, 'a> TreeSearch<'s, 'a> {
             }
             SpanEnd::Met(time, met) => {
                 let met = Some((time, triangles, met));
-                self.store_contact(EarliestContact { lower, triangles, is_open: false, met });
+                self.store_contact(EarliestContact::new(lower, triangles, false, met));
             }
             SpanEnd::Indeterminate => {
-                self.store_contact(EarliestContact { lower, triangles, is_open: false, met: None });
+                self.store_contact(EarliestContact::new(lower, triangles, false, None));
             }
             SpanEnd::Stalled => {
-                self.store_contact(EarliestContact { lower, triangles, is_open: true, met: None });
+                self.store_contact(EarliestContact::new(lower, triangles, true, None));
             }
         }
     }

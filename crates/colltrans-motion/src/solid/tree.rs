@@ -19,6 +19,7 @@ use glam::DVec3;
 
 use colltrans_convex::body::{Aabb, VertexHull};
 use colltrans_solid::body::{Solid, offset_vertex};
+use colltrans_solid::solve::hulls::Surface;
 
 /// Relative error of middle and half extents, which is added to the half extents.
 const EXTENT_ERROR: f64 = 4.0 * f64::EPSILON;
@@ -118,12 +119,37 @@ impl VertexHull for SolidTree<'_> {
         })
     }
 
+    fn vertex_count(&self) -> usize {
+        self.solid.vertices().len()
+    }
+
     fn reach(&self) -> f64 {
         self.reach
     }
 
     fn radius(&self) -> f64 {
         self.solid.radius()
+    }
+}
+
+/// All vertices of some facets of a shrunk solid, as a convex body, rounded like the solid.
+pub(super) struct PartHull {
+    vertices: Vec<DVec3>,
+    reach: f64,
+    radius: f64,
+}
+
+impl VertexHull for PartHull {
+    fn hull_vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
     }
 }
 
@@ -162,6 +188,39 @@ impl<'a> SolidTree<'a> {
     pub(super) fn facet(&self, triangle: u32) -> Facet {
         let corners = self.solid.triangles()[triangle as usize].map(|v| self.vertex(v));
         Facet::new(corners, self.solid.radius())
+    }
+
+    /// Returns the vertices of all facets below a node, shrunk.
+    pub(super) fn part_hull(&self, at: u32) -> PartHull {
+        let (mut numbers, mut open) = (Vec::new(), vec![at]);
+        while let Some(at) = open.pop() {
+            match self.content(at) {
+                NodeContent::Facet(triangle) => {
+                    numbers.extend(self.solid.triangles()[triangle as usize]);
+                }
+                NodeContent::Children(children) => open.extend(children),
+            }
+        }
+        numbers.sort_unstable();
+        numbers.dedup();
+        let vertices: Vec<DVec3> = numbers.into_iter().map(|v| self.vertex(v)).collect();
+        let square = vertices.iter().map(|v| v.length_squared()).fold(0.0, f64::max);
+        PartHull { vertices, reach: square.sqrt().next_up(), radius: self.solid.radius() }
+    }
+
+    /// Returns the amount by which the solid is shrunk.
+    pub(super) fn amount(&self) -> f64 {
+        self.amount
+    }
+
+    /// Returns an upper bound of the displacement of a vertex.
+    pub(super) fn max_displacement(&self) -> f64 {
+        self.solid.max_offset_displacement(self.amount)
+    }
+
+    /// Returns the surface of the solid with its hull; `None` if the solid is not convex.
+    pub(super) fn surface(&self) -> Option<Surface<'a>> {
+        Surface::of_convex(self.solid)
     }
 
     /// Returns a vertex, shrunk.

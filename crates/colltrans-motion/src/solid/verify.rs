@@ -12,7 +12,7 @@ use super::super::span::{Span, split_into_spans};
 use super::super::verify::{MotionProofError, check_planes};
 use super::facets;
 use super::inside;
-use super::tree::{NodeContent, SolidTree};
+use super::tree::{NodeContent, PartHull, SolidTree};
 use super::window::{Snapshot, SpanFrame, TreePart};
 use crate::MotionCast;
 use colltrans_convex::answer::are_weights;
@@ -102,7 +102,7 @@ fn check_cover(
                 }
             }
             Entry::PlaneList => {
-                let parts = [0, 1].map(|k| TreePart::at_node(trees[k], at[k]));
+                let parts = [0, 1].map(|k| trees[k].part_hull(at[k]));
                 let holds = is_separated_by_list(&span, parts.each_ref(), &ends, lists.next());
                 if !holds {
                     return Err(number);
@@ -113,19 +113,18 @@ fn check_cover(
     if stack.is_empty() && lists.next().is_none() { Ok(()) } else { Err(cover.len()) }
 }
 
-/// Checks whether a list of planes separates two facets throughout an interval.
+/// Checks whether a list of planes separates all facets of two parts throughout an interval.
 fn is_separated_by_list(
     span: &Span<SolidTree>,
-    parts: [&TreePart; 2],
+    parts: [&PartHull; 2],
     ends: &[Snapshot; 2],
     planes: Option<&Vec<super::super::TimedPlane>>,
 ) -> bool {
-    let [Some(f), Some(g)] = parts.map(TreePart::facet) else { return false };
     let Some(planes) = planes else { return false };
     let [from, to] = [ends[0].time, ends[1].time];
     let reaches = planes.first().is_some_and(|plane| plane.time == from)
         && planes.last().is_some_and(|plane| plane.time == to);
-    reaches && check_planes(&span.part_span([f, g], [from, to]), planes).is_ok()
+    reaches && check_planes(&span.part_span(parts, [from, to]), planes).is_ok()
 }
 
 /// Checks whether the facets or the solids meet at the claimed time.
@@ -156,5 +155,5 @@ fn is_contact_proven(
     }
     let [f, g] = [0, 1].map(|k| span.body(k).facet(triangles[k]));
     let part = span.part_span([&f, &g], [span.from, span.to]);
-    facets::is_contact_proven(&part, &part.instant_at(*time), *met)
+    facets::is_contact_proven(&part.instant_at(*time).bodies, [part.min_gap, part.error], *met)
 }

@@ -120,6 +120,62 @@ fn convex_bodies_as_solids_match_convex_search() {
     assert!(contacts > 60 && free > 30 && most < 1e-11, "{contacts} {free} {most:e}");
 }
 
+/// Convex solids are searched by their hulls, and the same bodies as two shells in one place by their trees.
+#[test]
+fn convex_solids_match_the_search_of_trees() {
+    let (mut contacts, mut free, mut lists) = (0, 0, 0);
+    for seed in 0..cases(160) {
+        let random = &mut Random::new(seed);
+        let mut body = |random: &mut Random| {
+            let convex = match random.index(3) {
+                0 => ConvexPolyhedron::cuboid(DVec3::splat(-0.5), random.vector().abs() + 0.1),
+                1 => Ok(hull(60, random)),
+                _ => Ok(hull(8, random)),
+            };
+            Solid::from_convex(&convex.expect("a body")).expect("a solid")
+        };
+        let once = [body(random), body(random)];
+        let twice = once.each_ref().map(|b| Solid::from_pieces([b, b]).expect("two shells"));
+        let turn = |random: &mut Random| {
+            if random.one_in(3) { DQuat::IDENTITY } else { random.rotation() }
+        };
+        let from = random.direction() * random.range(2.0, 4.0);
+        let pose = Pose::new(turn(random), from).expect("a pose");
+        let way = (random.vector() * random.range(1.0, 4.0) - from) * random.range(0.5, 2.0);
+        let spin = random.direction() * if random.one_in(3) { 0.0 } else { random.range(0.1, 5.0) };
+        let along = Motion::free_flight(pose, from, way, spin).expect("a motion");
+        let rest = Motion::at_rest(Pose::new(turn(random), DVec3::ZERO).expect("a pose"));
+        let gap = if random.one_in(4) { random.range(0.0, 0.4) } else { 0.0 };
+        let tolerance = [None, Some(0.0), Some(1e-7), Some(0.01)][random.index(4)];
+        let cast = |[p, q]: &[Solid; 2]| -> MotionOutcome<SolidMotionProof> {
+            let cast = MotionCast::new(p.with_motion(&along), q.with_motion(&rest));
+            let mut cast = cast.and_then(|cast| cast.with_min_gap(gap)).expect("a cast");
+            if let Some(tolerance) = tolerance {
+                cast = cast.with_tolerance(tolerance).expect("a tolerance");
+            }
+            checked_outcome_with_gap(&cast, [&along, &rest], gap)
+        };
+        let [one, two] = [cast(&once), cast(&twice)];
+        let spans = &one.proof().spans;
+        lists += usize::from(spans.iter().any(|span| String::from(span.cover.clone()) == "L"));
+        match (&one, &two) {
+            (MotionOutcome::Contact(a), MotionOutcome::Contact(b)) => {
+                contacts += 1;
+                let width = |of: &MotionContact<_>| of.upper - of.lower;
+                assert!(a.lower <= b.upper && b.lower <= a.upper, "{seed}: {a:?} {b:?}");
+                assert!(width(a) < 1e-9 + 4.0 * width(b), "{seed} {tolerance:?}: {a:?} {b:?}");
+            }
+            (MotionOutcome::Free(_), MotionOutcome::Free(_)) => free += 1,
+            (MotionOutcome::Overlapping(_), MotionOutcome::Overlapping(_))
+            | (MotionOutcome::Grazing(_), MotionOutcome::Grazing(_)) => {}
+            _ => panic!("{seed}: {one:?} {two:?}"),
+        }
+    }
+    let count = cases(160) as usize;
+    assert!(contacts > count / 4 && free > count / 10, "{contacts} {free}");
+    assert!(lists > count / 2, "{lists} of {count} proofs are one list");
+}
+
 /// Rounded bodies as solids have the answers of the convex search.
 #[test]
 fn rounded_bodies_as_solids_match_convex_search() {

@@ -179,8 +179,8 @@ impl ConvexSampler {
         Some((plane.gap.normal, bodies.weighted_points(&pairs, &weights)))
     }
 
-    /// Computes the normal of the least overlap of two bodies. Returns `None` if they overlap by more than
-    /// `most_depth`.
+    /// Computes the normal of the least overlap of two bodies. Returns `None` if they overlap by more than twice
+    /// `most_depth`: the search ends as soon as the depth exceeds `most_depth`, at a plane that need not be the best.
     pub(super) fn shallow_normal(&mut self, bodies: &TwoBodies, most_depth: f64) -> Option<DVec3> {
         let (plane, _) = self.least_overlap_plane(&Difference::new(bodies), most_depth);
         let plane = plane.filter(|plane| -plane.gap <= 2.0 * most_depth)?;

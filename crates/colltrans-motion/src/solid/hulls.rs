@@ -1,11 +1,12 @@
 //! Two convex solids in motion, searched like two convex bodies.
 //!
-//! The hulls guess the plane at a time. Its gap is that of the shrunk vertices. Therefore the planes prove as one list for
-//! both bodies what the cover of a search proves. Near a contact the hulls overlap before the shrunk solids do. Other
+//! The hulls guess the plane at a time. Its gap is that of the shrunk vertices. One list of planes for both bodies replaces
+//! the cover of a search by trees. Near a contact the hulls overlap before the shrunk solids do. Other
 //! guesses are then the last normal, the plane between two shrunk facets around the last nearest points, and the
 //! direction of least depth. Two such facets prove a contact. Derivation: `docs/theory/hulls-of-solids.md`.
 //!
-//! Invariant: a claimed gap is at most that of a scan of all shrunk vertices, and a support bound is at least theirs.
+//! Invariant: a claimed gap is at most that of a scan of all shrunk vertices, and a support bound at least their
+//! maximum.
 
 use glam::DVec3;
 
@@ -35,7 +36,7 @@ const MAX_SCANNED_VERTICES: usize = 1_000;
 const MAX_DISPLACEMENT_SHARE: f64 = 1e-6;
 
 /// Depth along the last normal, in multiples of the largest depth at which the shrunk solids may be apart, above which
-/// the facets around the last points are not compared first.
+/// the facets around the last points are not compared.
 const DEEP_FACTOR: f64 = 1_000.0;
 
 /// A plane between two convex solids: its normal and gap, and the nearest points in the frames of the bodies.
@@ -63,7 +64,10 @@ struct HullSupport;
 impl SupportSearch<SolidTree<'_>> for HullSupport {
     fn support_bound(&self, body: &SolidTree<'_>, normal: DVec3) -> f64 {
         let length = normal.length();
-        let Some(surface) = body.surface().filter(|_| length > 0.0) else { return 0.0 };
+        if length == 0.0 {
+            return 0.0;
+        }
+        let Some(surface) = body.surface() else { return f64::INFINITY };
         let (hull, unit) = (&surface.body.hull, normal / length);
         let (vertex, beyond) = hull.support_with_excess(unit, hull.support(unit).0);
         let beyond = beyond + hull.hull_error() + body.max_displacement();
@@ -267,8 +271,10 @@ impl<'t> Sampler<SolidTree<'t>> for HullSampler<'t> {
 }
 
 /// Searches a span of two convex solids. Returns the earliest contact, if any, and the proof up to it in
-/// [`SearchMode::Recording`]. Returns `None` if a solid is not convex, overlaps at the start are ignored, or the facets
-/// of a possible contact are not found.
+/// [`SearchMode::Recording`].
+///
+/// Returns `None` where the trees decide: if a solid is not convex or is shrunk far, if overlaps at the start are ignored,
+/// if the solids are not separated at the start of the span, or if no contact is proven where the planes end.
 pub(super) fn search_convex<'a>(
     span: &Span<'a, SolidTree<'a>>,
     mode: SearchMode,
@@ -279,12 +285,13 @@ pub(super) fn search_convex<'a>(
     }
     let mut sampler = HullSampler::new([span.body(0), span.body(1)])?;
     let SpanResult { planes, end } = prove_span(span, &mut sampler);
-    let lower = planes.last()?.time;
     *steps += sampler.convex.steps;
+    let lower = planes.last()?.time;
     let found = match end {
         SpanEnd::Free => None,
+        SpanEnd::Indeterminate | SpanEnd::Stalled => return None,
         SpanEnd::Met(mut time, (mut triangles, mut met)) => {
-            // The facets cross from some time on, which is bisected.
+            // The facets meet from some time on, which is bisected.
             let mut before = lower;
             while time - before > MIN_WIDTH {
                 let middle = before + 0.5 * (time - before);
@@ -295,13 +302,6 @@ pub(super) fn search_convex<'a>(
             }
             let met = Some((time, triangles, met));
             Some(EarliestContact { lower, triangles, is_open: false, met, is_refined: true })
-        }
-        SpanEnd::Indeterminate | SpanEnd::Stalled => {
-            let bodies = span.instant_at(lower).bodies;
-            let triangles = sampler.find_facets(&bodies, Some)?;
-            let is_open = end == SpanEnd::Stalled;
-            let is_refined = false;
-            Some(EarliestContact { lower, triangles, is_open, met: None, is_refined })
         }
     };
     let is_recorded = mode == SearchMode::Recording && lower > span.from;

@@ -60,7 +60,7 @@ pub(super) struct EarliestContact {
     pub(super) is_open: bool,
     /// Time of a proven contact, its facets and the proof.
     pub(super) met: Option<(f64, [u32; 2], FacetContactProof)>,
-    /// Whether that time is as near to `lower` as the search can prove.
+    /// Whether the facets around it are proven to be apart shortly before that time.
     pub(super) is_refined: bool,
 }
 

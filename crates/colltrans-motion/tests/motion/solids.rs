@@ -2,6 +2,7 @@
 //! screw threads, proofs and modified proofs, counts of work.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::mem;
 
 use colltrans_convex::{Cast, ConvexPolyhedron, Outcome, Pose};
 use colltrans_motion::{
@@ -174,6 +175,63 @@ fn convex_solids_match_the_search_of_trees() {
     let count = cases(160) as usize;
     assert!(contacts > count / 4 && free > count / 10, "{contacts} {free}");
     assert!(lists > count / 2, "{lists} of {count} proofs are one list");
+}
+
+/// A cube with sides of length 1, each face of which is divided into `n * n` squares.
+fn divided_cube(n: u32) -> Solid {
+    let mut vertices: Vec<DVec3> = Vec::new();
+    let mut faces: Vec<[u32; 4]> = Vec::new();
+    for axis in 0..3 {
+        for side in [0, n] {
+            let mut corner = |i: u32, j: u32| {
+                let mut at = [0; 3];
+                (at[axis], at[(axis + 1) % 3], at[(axis + 2) % 3]) = (side, i, j);
+                let point = DVec3::from_array(at.map(|k| f64::from(k) / f64::from(n) - 0.5));
+                let known = vertices.iter().position(|v| *v == point);
+                known.unwrap_or_else(|| {
+                    vertices.push(point);
+                    vertices.len() - 1
+                }) as u32
+            };
+            for i in 0..n {
+                for j in 0..n {
+                    let around =
+                        [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|[i, j]| corner(i, j));
+                    let [a, b, c, d] = around;
+                    faces.push(if side == 0 { [d, c, b, a] } else { around });
+                }
+            }
+        }
+    }
+    Solid::from_mesh(&vertices, &faces).expect("a solid")
+}
+
+/// Cubes with many vertices, also inside of faces, end in contact or slide along each other. They have the classes of
+/// answers of cubes with eight vertices.
+#[test]
+fn finely_divided_cubes_have_the_answers_of_cubes() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).expect("a cube");
+    let plain = Solid::from_convex(&cube).expect("a solid");
+    let fine = divided_cube(16);
+    assert!(fine.vertices().len() > 1_000);
+    let rest = Motion::at_rest(Pose::IDENTITY);
+    let at = |x: f64, y: f64, z: f64| Pose::from_translation(DVec3::new(x, y, z)).expect("a pose");
+    let ways = [
+        (at(0.25, 0.125, 3.0), at(0.25, 0.125, 1.0)),
+        (at(0.25, 0.125, 3.0), at(0.25, 0.125, 0.5)),
+        (at(-3.0, 0.0, 1.0), at(3.0, 0.0, 1.0)),
+        (at(-3.0, 0.0, 1.0), at(3.0, 0.125, 1.0625)),
+        (at(-3.0, 0.0, 1.5), at(0.0, 0.0, 1.0)),
+    ];
+    for (k, (from, to)) in ways.into_iter().enumerate() {
+        let along = Motion::between_poses(from, to).expect("a motion");
+        let answer = |solid: &Solid| {
+            let cast = MotionCast::new(solid.with_motion(&along), solid.with_motion(&rest));
+            let outcome = checked_outcome_with_gap(&cast.expect("a cast"), [&along, &rest], 0.0);
+            mem::discriminant(&outcome)
+        };
+        assert_eq!(answer(&fine), answer(&plain), "motion {k}");
+    }
 }
 
 /// Rounded bodies as solids have the answers of the convex search.

@@ -191,7 +191,7 @@ fn oriented_surface<F: AsRef<[u32]>>(
 }
 
 impl SolidReport {
-    /// Returns the report of [`Solid::from_mesh`] without building the solid, which takes half of the time.
+    /// Returns the report of [`Solid::from_mesh`] without building the solid.
     ///
     /// # Errors
     /// Returns the errors of [`Solid::from_mesh`].

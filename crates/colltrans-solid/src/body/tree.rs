@@ -243,7 +243,7 @@ impl Builder<'_> {
             (maxima, bounds, inward[0] | inward[1])
         };
         let cuts = maxima.depth_shares(&bounds);
-        nodes[at] = Node { bounds, inward_sides, cuts, ..nodes[at] };
+        nodes[at] = Node { bounds, cuts, inward_sides, ..nodes[at] };
         maxima
     }
 

@@ -127,7 +127,7 @@ fn convex_solids_match_the_search_of_trees() {
     let (mut contacts, mut free, mut lists) = (0, 0, 0);
     for seed in 0..cases(160) {
         let random = &mut Random::new(seed);
-        let mut body = |random: &mut Random| {
+        let body = |random: &mut Random| {
             let convex = match random.index(3) {
                 0 => ConvexPolyhedron::cuboid(DVec3::splat(-0.5), random.vector().abs() + 0.1),
                 1 => Ok(hull(60, random)),

@@ -98,13 +98,19 @@ impl Sampler<ConvexPolyhedron> for ConvexSampler {
         let beyond = between_cores + FAR_SHARE * difference.bodies.size();
         let found = self.nearest_points(&difference, beyond);
         let plane = found.gap_plane(&difference).map(|plane| plane.gap);
-        let (plane, points) = match plane {
-            Some(plane) if plane.gap > 0.0 || min_gap >= 0.0 => {
-                let gap = at.bodies.less_radii(plane.gap);
-                (Some(PlaneGap { gap, ..plane }), found.weighted_pairs_and_weights(&difference))
-            }
-            _ if min_gap < 0.0 => self.least_overlap_plane(&difference, f64::INFINITY),
-            _ => (None, found.weighted_pairs_and_weights(&difference)),
+        let are_apart = plane.is_some_and(|plane| plane.gap > 0.0);
+        let (plane, points) = if min_gap < 0.0 && !are_apart {
+            self.least_overlap_plane(&difference, f64::INFINITY)
+        } else {
+            let of_bodies =
+                |plane: PlaneGap| PlaneGap { gap: at.bodies.less_radii(plane.gap), ..plane };
+            // Nothing reads the points of a sample whose gap is not positive.
+            let points = if are_apart {
+                found.weighted_pairs_and_weights(&difference)
+            } else {
+                at_one_pair(VertexPair::default())
+            };
+            (plane.map(of_bodies), points)
         };
         let floor = 4.0 * difference.noise.point_error()
             + error
@@ -201,12 +207,17 @@ impl ConvexSampler {
         });
         let there =
             plane.map_or_else(VertexPair::default, |plane| difference.support_pair(plane.normal));
-        (plane, ([there; 3], [1.0, 0.0, 0.0]))
+        (plane, at_one_pair(there))
     }
 }
 
 /// A mean of vertex pairs: the pairs and their weights.
 type MeanPair = ([VertexPair; 3], [f64; 3]);
+
+/// Returns one vertex pair as a mean.
+fn at_one_pair(pair: VertexPair) -> MeanPair {
+    ([pair; 3], [1.0, 0.0, 0.0])
+}
 
 /// Computes the closing speed, along a normal, of two points given in the frames of their bodies.
 pub(super) fn closing_speed<'a, C: RelativeMotion<'a>>(

@@ -83,7 +83,7 @@ pub fn find_overlap(scene: &PairFrame, steps: &mut SolidSteps) -> Option<Overlap
         steps.count_pair(Some(Reason::Disjoint));
         return None;
     }
-    find_overlap_with(scene, &mut |entry| steps.count_pair(entry))
+    search_overlap(scene, &a, &b, &mut |entry| steps.count_pair(entry))
 }
 
 /// Finds an overlap like [`find_overlap`]. Calls `cut` for every pair of nodes in the order of the descent, with `None`
@@ -97,7 +97,17 @@ pub(crate) fn find_overlap_with(
         cut(Some(Reason::Disjoint));
         return None;
     }
-    let facets = search_pairs(scene, [0, 0], &a, &b, PairTest::overlap_test(scene), cut);
+    search_overlap(scene, &a, &b, cut)
+}
+
+/// Searches an overlap of two bodies with these bounds, from the roots of their trees.
+fn search_overlap(
+    scene: &PairFrame,
+    a: &Projected,
+    b: &Projected,
+    cut: &mut impl FnMut(Option<Reason>),
+) -> Option<Overlap> {
+    let facets = search_pairs(scene, [0, 0], a, b, PairTest::overlap_test(scene), cut);
     facets.map(|(f, g)| Overlap::Facets(f, g)).or_else(|| nested_shell(scene))
 }
 

@@ -2916,6 +2916,12 @@ class Parts:
             self.known[key] = spin.with_points(self.points(node))
         return self.known[key]
 
+    def whole_spin(self, node: int, spin: Spin) -> Spin:
+        """Returns the spin of all corners of the facets of a node."""
+        if self.facet[node] >= 0:
+            return self.spin(node, spin)
+        return spin.with_points(self.below(node))
+
 
 @dataclass
 class Cover:
@@ -2931,8 +2937,9 @@ class Cover:
 
     def whole(self, nodes: tuple[int, int]) -> Span:
         """Returns the span of all corners of the facets of two nodes."""
-        p, q = (part.below(node) for part, node in zip(self.parts, nodes, strict=True))
-        moving, fixed = self.span.moving.with_points(p), self.span.fixed.with_points(q)
+        p, q = self.parts
+        moving = p.whole_spin(nodes[0], self.span.moving)
+        fixed = q.whole_spin(nodes[1], self.span.fixed)
         return replace(self.span, moving=moving, fixed=fixed)
 
     def check(self, letters: str, lists: list[Any], until: Fraction) -> None:

@@ -280,7 +280,7 @@ fn is_like_box(body: &ConvexPolyhedron) -> bool {
 }
 
 /// Returns the way from a point in the plane of a face towards the face: across each side beyond which the point lies,
-/// one after the other. It may end beside an acute corner.
+/// one after the other. It may end outside of the face near an acute corner.
 fn way_onto_face(body: &ConvexPolyhedron, face: &LargeFace, point: DVec3) -> DVec3 {
     let mut corners = body.face_vertices(face.face).map(|v| body.vertices()[v as usize]);
     let Some(first) = corners.next() else { return DVec3::ZERO };

@@ -108,7 +108,7 @@ fn parallel_capsules_are_as_far_apart_as_their_axes() {
     }
 }
 
-/// A point or ball is at a random place beside, over an edge of, or before a corner of a box, also at a distance of a few
+/// A point or ball is near a face, an edge or a corner of a box, also at a distance of a few
 /// noises. The bounds alone are in closed form.
 #[test]
 fn bounds_of_points_and_boxes_hold_and_are_narrow() {

@@ -65,6 +65,7 @@ pub(super) struct EarliestContact {
 }
 
 impl EarliestContact {
+    /// Builds a contact that a search of two facets has found.
     fn new(
         lower: f64,
         triangles: [u32; 2],

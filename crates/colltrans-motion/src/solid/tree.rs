@@ -90,9 +90,13 @@ pub(crate) struct Facet {
 impl Facet {
     /// Builds a facet from its corners and the radius of its solid.
     pub(super) fn new(corners: [DVec3; 3], radius: f64) -> Self {
-        let square = corners.iter().map(|v| v.length_squared()).fold(0.0, f64::max);
-        Self { corners, reach: square.sqrt().next_up(), radius }
+        Self { corners, reach: reach_of(&corners), radius }
     }
+}
+
+/// Returns an upper bound of the distances of points from the origin.
+fn reach_of(points: &[DVec3]) -> f64 {
+    points.iter().map(|v| v.length_squared()).fold(0.0, f64::max).sqrt().next_up()
 }
 
 impl VertexHull for Facet {
@@ -204,8 +208,8 @@ impl<'a> SolidTree<'a> {
         numbers.sort_unstable();
         numbers.dedup();
         let vertices: Vec<DVec3> = numbers.into_iter().map(|v| self.vertex(v)).collect();
-        let square = vertices.iter().map(|v| v.length_squared()).fold(0.0, f64::max);
-        PartHull { vertices, reach: square.sqrt().next_up(), radius: self.solid.radius() }
+        let reach = reach_of(&vertices);
+        PartHull { vertices, reach, radius: self.solid.radius() }
     }
 
     /// Returns the amount by which the solid is shrunk.

@@ -229,9 +229,7 @@ impl Solid {
         vertices: &[DVec3],
         facets: &[F],
     ) -> Result<Self, SolidError> {
-        let (mut surface, report) = oriented_surface(vertices, facets, false)?;
-        surface.separate_sheets();
-        Ok(Self::from_surface(surface, report))
+        Ok(Self::from_oriented(oriented_surface(vertices, facets, false)?))
     }
 
     /// Builds a solid from a surface with open shells, such as a scan or a sheet.
@@ -246,9 +244,7 @@ impl Solid {
         vertices: &[DVec3],
         facets: &[F],
     ) -> Result<Self, SolidError> {
-        let (mut surface, report) = oriented_surface(vertices, facets, true)?;
-        surface.separate_sheets();
-        Ok(Self::from_surface(surface, report))
+        Ok(Self::from_oriented(oriented_surface(vertices, facets, true)?))
     }
 
     /// Builds the union of several solids or convex polyhedra, which may overlap.
@@ -348,6 +344,12 @@ impl Solid {
         }
         self.input_counts[0] = inputs.iter().max().map_or(0, |last| last.0.saturating_add(1));
         self
+    }
+
+    /// Separates the sheets of a surface and builds the solid.
+    fn from_oriented((mut surface, report): (Surface, SolidReport)) -> Self {
+        surface.separate_sheets();
+        Self::from_surface(surface, report)
     }
 
     /// Builds the tree, and orders the triangles by its leaves.

@@ -312,14 +312,11 @@ impl Section<'_> {
     /// Stores the section edge at the vertex `start` that leads along `chain` towards height `h` in `edge`. It may lie
     /// past the ends of the chain.
     fn edge_toward_height(&self, chain: Chain, start: Crossing, h: f64, edge: &mut SectionEdge) {
-        if start.h() <= h {
-            edge.low = start;
-            edge.high = self.next_vertex(chain, &start);
+        *edge = if start.h() <= h {
+            SectionEdge::new(start, self.next_vertex(chain, &start))
         } else {
-            edge.low = self.previous_vertex(chain, &start);
-            edge.high = start;
-        }
-        edge.direction = edge.low.edge_direction_to(&edge.high);
+            SectionEdge::new(self.previous_vertex(chain, &start), start)
+        };
     }
 
     /// Finds an edge of the chain near the vertex `start`. This vertex is at the top or at the bottom of the chain, or

@@ -34,7 +34,7 @@ pub(crate) struct NearestFacets {
 
 /// Computes a lower bound of the distance of two bodies as they are offset in `scene`, along a unit normal. It is not
 /// positive if the plane does not certainly separate them.
-fn margin_along(scene: &PairFrame, pair: &HullPair, normal: DVec3) -> f64 {
+fn distance_bound_along(scene: &PairFrame, pair: &HullPair, normal: DVec3) -> f64 {
     let support = |k: usize, side: &PlacedBody, normal: DVec3| {
         pair.surfaces[k].body.hull.support(side.matrix.transpose() * normal).index() as u32
     };
@@ -77,7 +77,7 @@ pub(crate) fn is_plane_between(scene: &PairFrame) -> bool {
             },
             _ => return false,
         };
-        margin_along(scene, &pair, normal) > scene.min_gap()
+        distance_bound_along(scene, &pair, normal) > scene.min_gap()
     };
     HullPair::of_convex(&scene.setting.bodies).is_some_and(separated)
 }
@@ -89,7 +89,7 @@ pub(crate) fn nearest_facets(scene: &PairFrame, prove: bool) -> Option<NearestFa
     let pair = HullPair::of_convex(&scene.setting.bodies)?;
     let found = Pair { bodies: pair.hulls }.distance().ok()?;
     let normal = found.normal?;
-    let lower = Some(margin_along(scene, &pair, normal)).filter(|margin| *margin > 0.0)?;
+    let lower = Some(distance_bound_along(scene, &pair, normal)).filter(|margin| *margin > 0.0)?;
     let sides = [&scene.moving, &scene.fixed];
     let weights = found.near.weights;
     let heaviest = (1..4).fold(0, |best, k| if weights[k] > weights[best] { k } else { best });

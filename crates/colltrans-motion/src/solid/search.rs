@@ -2,7 +2,9 @@
 //!
 //! The open entries are a stack of pairs of parts, each with an interval. A pair that no plane separates throughout its
 //! interval is split. Its time is halved if the parts rotate far or move farther than a multiple of their size;
-//! otherwise the larger part is split. Two remaining facets are searched like two convex bodies.
+//! otherwise the larger part is split. Two remaining facets are searched like two convex bodies. Without a proof to
+//! record, the part that is nearer at the start of the interval is searched first. An early contact shortens the
+//! intervals of all pairs that follow.
 //!
 //! Invariant: every pair of facets is separated up to the end of the span, or up to the earliest contact found so far,
 //! except for the open entries. Later times are not searched.
@@ -48,6 +50,9 @@ const EDGES: [PlaneName; 9] = {
         Edges(2, 2),
     ]
 };
+
+/// Index of the snapshot at the end of the search: the end of the span, or the lower bound of the earliest contact.
+const LAST_SNAPSHOT: u32 = 1;
 
 /// The earliest contact found.
 #[derive(Debug, Clone, Copy)]
@@ -145,8 +150,7 @@ impl<'s, 'a> TreeSearch<'s, 'a> {
                 return;
             }
             if self.snapshot_time(to) > lower {
-                self.snapshots.push(self.frame.snapshot_at(lower));
-                to = self.snapshots.len() as u32 - 1;
+                to = LAST_SNAPSHOT;
             }
         }
         self.steps.nodes += 1;
@@ -173,12 +177,27 @@ impl<'s, 'a> TreeSearch<'s, 'a> {
             }
         } else if is_long && (turns || travel_ratio > MAX_TRAVEL_RATIO) {
             self.halve_interval(at, [from, to]);
-        } else if let Some((which, [first, second])) = split_larger_node(at, nodes.each_ref()) {
-            self.record_entry(Entry::Split(which));
+        } else if let Some((which, [mut first, mut second])) =
+            split_larger_node(at, nodes.each_ref())
+        {
+            if self.recorded.is_some() {
+                self.record_entry(Entry::Split(which));
+            } else if !self.ignores_start_overlaps {
+                let gap = |parts| self.box_gap(parts, from);
+                if gap(second) < gap(first) {
+                    (first, second) = (second, first);
+                }
+            }
             let (ends, snapshots) = ([from, to], self.snapshots.len() as u32);
             let open = |parts| OpenEntry { parts, ends, snapshots };
             self.stack.extend([open(second), open(first)]);
         }
+    }
+
+    /// Estimates the gap of the boxes of two nodes at a snapshot.
+    fn box_gap(&self, parts: [u32; 2], snap: u32) -> f64 {
+        let [moving, fixed] = [0, 1].map(|k| self.trees[k].node(parts[k]));
+        self.snapshots[snap as usize].box_gap(&moving, &fixed)
     }
 
     /// Returns the time of a snapshot.
@@ -244,8 +263,13 @@ impl<'s, 'a> TreeSearch<'s, 'a> {
         }
     }
 
-    /// Stores a contact. The earlier lower bound and the earlier proven contact remain.
+    /// Stores a contact. The earlier lower bound and the earlier proven contact remain. The recorded entries are
+    /// dropped, because they prove times after the contact too.
     fn store_contact(&mut self, new: EarliestContact) {
+        self.recorded = None;
+        if self.found.is_none_or(|before| new.lower < before.lower) {
+            self.snapshots[LAST_SNAPSHOT as usize] = self.frame.snapshot_at(new.lower);
+        }
         let Some(before) = &mut self.found else {
             self.found = Some(new);
             return;

@@ -148,6 +148,17 @@ pub(super) struct Window<'w, 's, 'a> {
     middle_offset: DVec3,
 }
 
+impl Snapshot {
+    /// Estimates the gap of two boxes along the line through their middles. It is negative if they overlap there.
+    pub(super) fn box_gap(&self, moving: &BoxNode, fixed: &BoxNode) -> f64 {
+        let [p, q] = self.places.each_ref().map(|place| &place.rotation);
+        let between = self.offset + (*q * fixed.middle - *p * moving.middle);
+        let half = |rotation: &DMat3, half: DVec3| (rotation.transpose() * between).abs().dot(half);
+        let length = between.length();
+        length - (half(p, moving.half) + half(q, fixed.half)) / length.max(f64::MIN_POSITIVE)
+    }
+}
+
 impl<'s, 'a> SpanFrame<'s, 'a> {
     /// Computes the error bounds and the rotation data of a span.
     pub(super) fn new(span: &'s Span<'a, SolidTree<'a>>) -> Self {

@@ -9,6 +9,7 @@
 //!   (`nearest`)
 //! - [`cast`]: clearance by boxes and convex hulls, least tolerances, proofs and their verification
 //! - [`pair`]: distances and their proofs
+//! - [`penetration`]: distances of nested surfaces, signed distances of points
 //! - [`kinds`]: bodies and answers of either kind
 
 #![allow(
@@ -24,6 +25,8 @@ pub mod cast;
 pub mod kinds;
 #[doc(hidden)]
 pub mod pair;
+#[doc(hidden)]
+pub mod penetration;
 #[doc(hidden)]
 pub mod solve;
 
@@ -44,4 +47,5 @@ pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
 #[doc(hidden)]
 pub use pair::SolidPairSearch;
 pub use pair::{OverlapDepth, SolidPair};
+pub use penetration::{SignedDistance, SignedDistanceError, SolidPenetration, SurfaceDistance};
 pub use solve::{Overlap, SolidContact, SolidGap, SolidNear, SolidSteps, Workspace};

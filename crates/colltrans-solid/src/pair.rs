@@ -97,17 +97,17 @@ impl Cover<Apart> {
 }
 
 /// Result of a search for the nearest facets.
-struct NearestFacets {
-    spot: Option<NearestPoints>,
+pub(crate) struct NearestFacets {
+    pub(crate) spot: Option<NearestPoints>,
     /// Lower bound on the distance of all facets.
-    lower: f64,
+    pub(crate) lower: f64,
     /// Whether a plane separates the bodies, so that neither is inside the other.
-    are_separated: bool,
+    pub(crate) are_separated: bool,
     /// Cover of all pairs of nodes, if a proof was requested and the lower bound is positive.
     cover: Option<Cover<Apart>>,
     /// Lower bound of the distance of the cores that the cover proves, if it is known.
     proven: Option<f64>,
-    steps: SolidSteps,
+    pub(crate) steps: SolidSteps,
 }
 
 /// Data for a proof: points of the bodies, and a cover of all pairs of facets if the bodies are apart.
@@ -390,7 +390,7 @@ fn prove_within(
 }
 
 /// Returns the cores of the nominal bodies in a common frame; its direction `z` has no meaning.
-fn pair_scene<'a>(pair: &Pair<'a, Solid>) -> Result<PairFrame<'a>, QueryError> {
+pub(crate) fn pair_scene<'a>(pair: &Pair<'a, Solid>) -> Result<PairFrame<'a>, QueryError> {
     let setting = Setting::from_bodies(pair.bodies, DVec3::Z)?;
     Ok(PairFrame::of_cores(&setting))
 }
@@ -408,7 +408,7 @@ fn near_less_radii(bodies: &TwoBodies<'_, Solid>, near: SolidNear) -> SolidNear 
 
 /// Finds the nearest facets: those of convex bodies from the distance of their hulls, others by a search. If `prove` is
 /// set, the result has a cover: the plane between the facets of convex bodies, or the pairs of nodes of the search.
-fn search_nearest(
+pub(crate) fn search_nearest(
     pair: &Pair<'_, Solid>,
     scene: &PairFrame,
     until: SearchEnd,

@@ -11,9 +11,10 @@ pub use colltrans_solid::proof::{
 };
 #[doc(inline)]
 pub use colltrans_solid::{
-    AsSolid, NoGrazing, Overlap, OverlapDepth, Shell, ShellKind, ShrinkReport, SolidCast,
-    SolidContact, SolidError, SolidFree, SolidGap, SolidIntersection, SolidNear, SolidOptions,
-    SolidOverlap, SolidPair, SolidReport, SolidSteps, StartOverlap, Workspace,
+    AsSolid, NoGrazing, Overlap, OverlapDepth, Shell, ShellKind, ShrinkReport, SignedDistance,
+    SignedDistanceError, SolidCast, SolidContact, SolidError, SolidFree, SolidGap,
+    SolidIntersection, SolidNear, SolidOptions, SolidOverlap, SolidPair, SolidPenetration,
+    SolidReport, SolidSteps, StartOverlap, SurfaceDistance, Workspace,
 };
 #[doc(hidden)]
 pub use colltrans_solid::{SolidPairSearch, SolidScene};

@@ -10,6 +10,7 @@ mod fuzz_corpus;
 mod golden;
 mod min_gap;
 mod oracle;
+mod penetration;
 mod points;
 mod proof;
 mod properties;

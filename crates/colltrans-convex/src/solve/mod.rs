@@ -214,15 +214,22 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
         Separated { certificate, solver: self.solver, steps: self.context.watch.steps }
     }
 
-    /// Encloses the line again after a separating line was refuted, starting at its support point.
+    /// Encloses the line again after a separating line was refuted, and computes the outcome.
+    #[cold]
+    fn enclose_again(&mut self, refuted: &SeparatingLine) -> Result<Outcome, QueryError> {
+        let enclosure = self.enclosure_from_refuted(refuted);
+        self.outcome_of(enclosure, Attempt::Second)
+    }
+
+    /// Computes a portal or a separating line after a separating line was refuted, starting at its verified
+    /// support point.
     ///
     /// Such a line was found because a hill climb had stopped short of the support point.
     #[cold]
-    fn enclose_again(&mut self, refuted: &SeparatingLine) -> Result<Outcome, QueryError> {
+    fn enclosure_from_refuted(&mut self, refuted: &SeparatingLine) -> Option<Enclosure> {
         let start =
             NormalGuess { normal: refuted.normal.extend(0.0), near: Some(refuted.point.pair) };
-        let enclosure = portal::enclose(&mut self.context, &start);
-        self.outcome_of(enclosure, Attempt::Second)
+        portal::enclose(&mut self.context, &start)
     }
 
     /// Computes a portal or a separating line from the features of the previous answer. `None` if they
@@ -557,8 +564,13 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
             return Ok((portal, face));
         }
         let start = NormalGuess::from_ellipsoids(&self.context.difference);
-        let Some(Enclosure::Portal(mut portal, _)) = portal::enclose(&mut self.context, &start)
-        else {
+        let mut enclosure = portal::enclose(&mut self.context, &start);
+        // The line is inside the widened bodies. Therefore a separating line is refuted.
+        if let Some(Enclosure::Separated(found)) = enclosure {
+            let refuted = portal::widest_margin(&mut self.context, found);
+            enclosure = self.enclosure_from_refuted(&refuted);
+        }
+        let Some(Enclosure::Portal(mut portal, _)) = enclosure else {
             return Err(Stalled::NoPortal);
         };
         match portal::refine(&mut self.context, &mut portal, portal::MAX_PORTALS) {

@@ -70,6 +70,8 @@ fn found_by_the_campaign() {
         ("magnitude", 433_791_703_393),
         // A climb that stuck in a lateral direction.
         ("narrow-rings", 4_728_759_013_088),
+        // The same for widened bodies.
+        ("nearly-flat-prism", 137_438_959_658),
         // Shadows apart by nine noises, of which input points beyond the vertices may take nearly all.
         ("nearly-straight", 4_294_967_489),
     ];

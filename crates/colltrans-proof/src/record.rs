@@ -63,6 +63,14 @@ macro_rules! record {
                 let own: &[_] = &[$(stringify!($field)),*];
                 [own, $(&<$rest_type>::fields())?].concat()
             }
+
+            /// Removes the fields that are not requested. Fields that every record has stay.
+            pub fn keep_fields(&mut self, requested: &crate::record::Fields) {
+                $(if !requested.includes(stringify!($field)) {
+                    crate::record::Field::remove(&mut self.$field);
+                })*
+                $(self.$rest.keep_fields(requested);)?
+            }
         }
     };
 }
@@ -74,11 +82,18 @@ trait Field {
     fn is_absent(&self) -> bool {
         false
     }
+
+    /// Makes the field absent, unless every record has it.
+    fn remove(&mut self) {}
 }
 
 impl<T> Field for Option<T> {
     fn is_absent(&self) -> bool {
         self.is_none()
+    }
+
+    fn remove(&mut self) {
+        *self = None;
     }
 }
 
@@ -86,11 +101,19 @@ impl<T> Field for Vec<T> {
     fn is_absent(&self) -> bool {
         self.is_empty()
     }
+
+    fn remove(&mut self) {
+        self.clear();
+    }
 }
 
 impl<K, V> Field for BTreeMap<K, V> {
     fn is_absent(&self) -> bool {
         self.is_empty()
+    }
+
+    fn remove(&mut self) {
+        self.clear();
     }
 }
 
@@ -98,6 +121,26 @@ macro_rules! always_present {
     ($($type:ty),*) => { $(impl Field for $type {})* };
 }
 always_present!(Ending, ObstacleId, f64, u32, usize, &str);
+
+/// Names of fields that are requested. The default is all fields.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Fields(Option<Box<[String]>>);
+
+impl Fields {
+    /// All fields.
+    pub const ALL: Self = Self(None);
+
+    /// Requests only the fields with these names. Unknown names have no effect.
+    pub fn from_names(names: impl IntoIterator<Item = String>) -> Self {
+        Self(Some(names.into_iter().collect()))
+    }
+
+    /// Checks whether a field is requested.
+    #[inline]
+    pub fn includes(&self, name: &str) -> bool {
+        self.0.as_deref().is_none_or(|names| names.iter().any(|requested| requested == name))
+    }
+}
 
 /// Answer to any query about two bodies, for example a line of a batch.
 ///
@@ -359,6 +402,31 @@ impl Question {
             Self::Clearance => Answer::Clearance(cast.clearance_observed(observer)?),
         })
     }
+
+    /// Computes the requested fields of the record for a cast.
+    ///
+    /// A contact for which neither `exit` nor `exit_bounds` is requested is answered by [`Cast::first_contact`]. Its
+    /// translation can then differ in the last digits, and it grazes only if the first contact does. Features and
+    /// points that are not requested are not computed.
+    ///
+    /// # Errors
+    /// Returns the errors of the query's method.
+    pub fn record(self, cast: &Cast, requested: &Fields) -> Result<Record, QueryError> {
+        let needs_exit = ["exit", "exit_bounds"].iter().any(|name| requested.includes(name));
+        let mut record: Record = match self {
+            Self::Contact if needs_exit => {
+                CastRecord::of_range_with(&cast.contact_range()?, cast, requested).into()
+            }
+            Self::Contact => {
+                CastRecord::of_outcome_with(&cast.first_contact()?, cast, requested).into()
+            }
+            Self::Clearance => {
+                ClearanceRecord::from_clearance_with(&cast.clearance()?, cast, requested).into()
+            }
+        };
+        record.keep_fields(requested);
+        Ok(record)
+    }
 }
 
 impl Answer {
@@ -391,6 +459,26 @@ impl PairQuestion {
             Self::Depth => PairAnswer::Depth(pair.depth()?),
             Self::Within(length) => PairAnswer::within_answer(pair.within_counted(length)?),
         })
+    }
+
+    /// Computes the requested fields of the record for convex bodies.
+    ///
+    /// A distance of which only `lower` and `upper` are requested is answered by [`Pair::distance_bounds`], whose
+    /// bounds can differ in the last digits for bodies that are points or spheres.
+    ///
+    /// # Errors
+    /// Returns the errors of the query's method.
+    pub fn record(self, pair: &Pair, requested: &Fields) -> Result<Record, QueryError> {
+        let more = ["points", "normal", "features", "steps"];
+        let mut record: Record = match self {
+            Self::Distance if more.iter().any(|name| requested.includes(name)) => {
+                DistanceRecord::from_distance_with(&pair.distance()?, pair, requested).into()
+            }
+            Self::Distance => DistanceRecord::of_bounds(pair.distance_bounds()?).into(),
+            Self::Depth | Self::Within(_) => self.answer(pair)?.record(pair),
+        };
+        record.keep_fields(requested);
+        Ok(record)
     }
 
     /// Computes the answer for solids.
@@ -500,6 +588,35 @@ impl Record {
             Self::Cast(CastRecord { contact, .. })
             | Self::Clearance(ClearanceRecord { contact, .. }) => Some(contact),
             _ => None,
+        }
+    }
+
+    /// Returns the names of all fields of records, each once.
+    pub fn fields() -> Vec<&'static str> {
+        let mut names = [
+            CastRecord::fields(),
+            ClearanceRecord::fields(),
+            SolidClearanceRecord::fields(),
+            DistanceRecord::fields(),
+            DepthRecord::fields(),
+            MotionRecord::fields(),
+        ]
+        .concat();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    /// Removes the fields that are not requested. Fields that every record has stay: `outcome`, and `looks` of motions.
+    pub fn keep_fields(&mut self, requested: &Fields) {
+        match self {
+            Self::Cast(of) => of.keep_fields(requested),
+            Self::Clearance(of) => of.keep_fields(requested),
+            Self::SolidClearance(of) => of.keep_fields(requested),
+            Self::Distance(of) => of.keep_fields(requested),
+            Self::Depth(of) => of.keep_fields(requested),
+            Self::Motion(of) => of.keep_fields(requested),
+            Self::Error(of) => of.keep_fields(requested),
         }
     }
 

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use colltrans::glam::DVec3;
 use colltrans::motion::Motion;
-use colltrans::record::{MotionRecord, PairQuestion, Record};
+use colltrans::record::{Fields, MotionRecord, PairQuestion, Record};
 use colltrans::{Cast, Options, Pair, Placed, Pose, Solver};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 
 use crate::body;
 use crate::bulk::{Answered, Plan, thread_count};
-use crate::columns::{Question, Row};
+use crate::columns::{ON_MOVING, Question, Row, VECTORS};
 use crate::motion::{EITHER, convex_cast, solid_cast};
 use crate::repeats::{Repeats, RowAnswerer, RowAnswerers};
 use crate::rows::{AnyBody, Bodies, Table};
@@ -31,6 +31,8 @@ struct Work<'a> {
     bodies: [Bodies<'a>; 2],
     poses: [Table<'a>; 2],
     with: RowQuery<'a>,
+    /// Fields of records that become columns.
+    fields: Fields,
 }
 
 /// The arguments of a question besides the bodies.
@@ -144,7 +146,7 @@ impl<'a> Work<'a> {
         };
         let record = if let [AnyBody::Convex(p), AnyBody::Convex(q)] = bodies {
             Pair::new(p.at(poses[0]), q.at(poses[1]))
-                .and_then(|pair| Ok(question.answer(&pair)?.record(&pair)))
+                .and_then(|pair| question.record(&pair, &self.fields))
         } else {
             let placed = |k: usize| -> Result<Placed<'_, _>, String> {
                 Ok(Placed { body: bodies[k].solid()?, pose: poses[k] })
@@ -261,6 +263,7 @@ pub(crate) fn ask_many<'py>(
         ],
         poses: [table("moving_pose")?, table("fixed_pose")?],
         with,
+        fields: record_fields(&columns, featured),
     };
     let repeats = py.detach(|| work.repeats(n, thread_count(threads)));
     let by = repeats.as_ref().map(RowAnswerers::new);
@@ -270,6 +273,15 @@ pub(crate) fn ask_many<'py>(
         let by = by.as_ref().map_or(RowAnswerer::Cast, |by| by.for_row(row));
         work.answer(row, &by, to)
     })
+}
+
+/// Returns the fields of records that become these columns.
+fn record_fields(columns: &[String], featured: bool) -> Fields {
+    let points = columns.iter().any(|name| name == VECTORS[ON_MOVING]).then(|| "points".into());
+    let vertices = featured.then(|| "features".into());
+    // The overlaps of solids become the column of their least tolerance.
+    let more = [points, vertices, Some("start_overlaps".into())].into_iter().flatten();
+    Fields::from_names(columns.iter().cloned().chain(more))
 }
 
 /// The arguments by name.

@@ -9,8 +9,8 @@ use colltrans_solid::SolidCast;
 use colltrans_solid::body::Solid;
 
 use super::{
-    Ending, Features, FeaturesRecord, StartOverlapRecord, open_bodies, positive_gap, record,
-    without_negative_zeros,
+    Ending, Features, FeaturesRecord, Fields, StartOverlapRecord, open_bodies, positive_gap,
+    record, without_negative_zeros,
 };
 
 record! {
@@ -129,13 +129,20 @@ record! {
 impl CastRecord {
     /// Converts an answer of [`Cast::first_contact`].
     pub fn of_outcome(outcome: &Outcome, cast: &Cast) -> Self {
+        Self::of_outcome_with(outcome, cast, &Fields::ALL)
+    }
+
+    /// Converts an answer as [`Self::of_outcome`] does, with the requested points and features.
+    pub(super) fn of_outcome_with(outcome: &Outcome, cast: &Cast, requested: &Fields) -> Self {
         match outcome {
-            Outcome::Contact(first) => {
-                Self::with_outcome(Ending::Contact, ContactRecord::of_contact(first, cast))
-            }
-            Outcome::Grazing(first) => {
-                Self::with_outcome(Ending::Grazing, ContactRecord::of_grazing(first, cast))
-            }
+            Outcome::Contact(first) => Self::with_outcome(
+                Ending::Contact,
+                ContactRecord::of_contact(first, cast, requested),
+            ),
+            Outcome::Grazing(first) => Self::with_outcome(
+                Ending::Grazing,
+                ContactRecord::of_grazing(first, cast, requested),
+            ),
             Outcome::Separated(separated) => {
                 Self::with_outcome(Ending::Separated, ContactRecord::of_separated(separated, cast))
             }
@@ -144,13 +151,18 @@ impl CastRecord {
 
     /// Converts an answer of [`Cast::contact_range`].
     pub fn of_range(range: &ContactRange, cast: &Cast) -> Self {
+        Self::of_range_with(range, cast, &Fields::ALL)
+    }
+
+    /// Converts an answer as [`Self::of_range`] does, with the requested points and features.
+    pub(super) fn of_range_with(range: &ContactRange, cast: &Cast, requested: &Fields) -> Self {
         match range {
             ContactRange::Contact { first, last } => Self::with_outcome(
                 Ending::Contact,
-                ContactRecord::of_contact(first, cast).with_last(last),
+                ContactRecord::of_contact(first, cast, requested).with_last(last),
             ),
             ContactRange::Grazing { first, last } => {
-                let contact = ContactRecord::of_grazing(first, cast);
+                let contact = ContactRecord::of_grazing(first, cast, requested);
                 Self::with_outcome(Ending::Grazing, contact.with_last(&last.contact))
             }
             ContactRange::Separated(separated) => {
@@ -167,19 +179,29 @@ impl CastRecord {
 impl ClearanceRecord {
     /// Converts an answer of [`Cast::clearance`] for convex bodies.
     pub fn from_clearance(clearance: &Clearance, cast: &Cast) -> Self {
+        Self::from_clearance_with(clearance, cast, &Fields::ALL)
+    }
+
+    /// Converts an answer as [`Self::from_clearance`] does, with the requested points and features.
+    pub(super) fn from_clearance_with(
+        clearance: &Clearance,
+        cast: &Cast,
+        requested: &Fields,
+    ) -> Self {
         let at = |outcome, contact| Self { outcome, contact, ..Self::default() };
         match clearance {
             Clearance::Blocked { distance, contact } => {
-                let record = at(Ending::Blocked, ContactRecord::of_contact(contact, cast));
+                let record =
+                    at(Ending::Blocked, ContactRecord::of_contact(contact, cast, requested));
                 Self { distance: Some(*distance), ..record }
             }
             Clearance::Free(FreeReason::Slides(grazing)) => {
-                at(Ending::Slides, ContactRecord::of_grazing(grazing, cast))
+                at(Ending::Slides, ContactRecord::of_grazing(grazing, cast, requested))
             }
             // The last contact is the first one of the reversed cast.
             Clearance::Free(FreeReason::Behind(last)) => {
-                let contact =
-                    ContactRecord::of_contact(last, &cast.reversed()).with_exit(last.exit());
+                let contact = ContactRecord::of_contact(last, &cast.reversed(), requested)
+                    .with_exit(last.exit());
                 let (translation, translation_bounds) = (None, None);
                 at(Ending::Behind, ContactRecord { translation, translation_bounds, ..contact })
             }
@@ -187,7 +209,8 @@ impl ClearanceRecord {
                 at(Ending::Separated, ContactRecord::of_separated(separated, cast))
             }
             Clearance::Overlapping(OverlapAhead { first, last }) => {
-                let contact = ContactRecord::of_contact(first, cast).with_exit(last.exit());
+                let contact =
+                    ContactRecord::of_contact(first, cast, requested).with_exit(last.exit());
                 let [back, on] = [first, last].map(|contact| Some(-contact.certificate.lower));
                 Self { back, on, ..at(Ending::Overlapping, contact) }
             }
@@ -196,28 +219,33 @@ impl ClearanceRecord {
 }
 
 impl ContactRecord {
-    fn of_contact(contact: &Contact, cast: &Cast) -> Self {
-        let features = contact.features(cast);
+    /// Converts a contact. Points and features are computed if they are requested.
+    fn of_contact(contact: &Contact, cast: &Cast, requested: &Fields) -> Self {
+        let point = || without_negative_zeros(contact.witness_points(cast).on_fixed);
+        let features = || {
+            let bodies = [cast.moving(), cast.fixed()];
+            FeaturesRecord::of_bodies(contact.features(cast), bodies)
+        };
         let translation = contact.bounded();
         Self {
             translation: Some(translation.value),
             translation_bounds: Some(translation.bounds()),
             normal: Some(without_negative_zeros(contact.normal)),
-            point: Some(without_negative_zeros(contact.witness_points(cast).on_fixed)),
+            point: requested.includes("point").then(point),
             rounding: Some(contact.certificate.rounding),
             min_gap: positive_gap(cast.options().min_gap),
-            features: Some(FeaturesRecord::of_bodies(features, [cast.moving(), cast.fixed()])),
+            features: requested.includes("features").then(features),
             solver: Some(contact.solver),
             steps: Some(contact.steps),
             ..Self::default()
         }
     }
 
-    fn of_grazing(grazing: &Grazing, cast: &Cast) -> Self {
+    fn of_grazing(grazing: &Grazing, cast: &Cast, requested: &Fields) -> Self {
         Self {
             overlap: Some(grazing.overlap),
             sideways: Some(without_negative_zeros(grazing.separating_direction)),
-            ..Self::of_contact(&grazing.contact, cast)
+            ..Self::of_contact(&grazing.contact, cast, requested)
         }
     }
 

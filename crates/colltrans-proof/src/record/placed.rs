@@ -10,7 +10,7 @@ use colltrans_solid::pair::OverlapDepth;
 use glam::DVec3;
 
 use super::{
-    Ending, FeaturesRecord, StartOverlapRecord, open_bodies, record, without_negative_zeros,
+    Ending, FeaturesRecord, Fields, StartOverlapRecord, open_bodies, record, without_negative_zeros,
 };
 
 record! {
@@ -68,14 +68,30 @@ record! {
 impl DistanceRecord {
     /// Converts an answer of [`Pair::distance`] for convex bodies.
     pub fn from_distance(distance: &Distance, pair: &Pair<'_>) -> Self {
-        Self { steps: Some(distance.steps), ..Self::of_any_distance(distance, pair) }
+        Self::from_distance_with(distance, pair, &Fields::ALL)
+    }
+
+    /// Converts an answer as [`Self::from_distance`] does, with the requested features.
+    pub(super) fn from_distance_with(
+        distance: &Distance,
+        pair: &Pair<'_>,
+        requested: &Fields,
+    ) -> Self {
+        let steps = Some(distance.steps);
+        Self { steps, ..Self::of_any_distance(distance, pair, requested) }
+    }
+
+    /// Converts both bounds of a distance.
+    pub(super) fn of_bounds([lower, upper]: [f64; 2]) -> Self {
+        let outcome = if lower > 0.0 { Ending::Apart } else { Ending::Meeting };
+        Self { outcome, lower: Some(lower), upper: Some(upper), ..Self::default() }
     }
 
     /// Converts an answer of [`Pair::distance`] for solids.
     pub fn of_solids(distance: &Distance<Solid>, pair: &Pair<'_, Solid>) -> Self {
         Self {
             surfaces: open_bodies(pair.moving(), pair.fixed()),
-            ..Self::of_any_distance(distance, pair)
+            ..Self::of_any_distance(distance, pair, &Fields::ALL)
         }
     }
 
@@ -88,9 +104,10 @@ impl DistanceRecord {
             Within::Farther(gap) => {
                 Self { normal: Some(without_negative_zeros(gap.normal)), ..Self::of_gap(gap.gap) }
             }
-            Within::Undecided(distance) => {
-                Self { outcome: Ending::Undecided, ..Self::of_any_distance(distance, pair) }
-            }
+            Within::Undecided(distance) => Self {
+                outcome: Ending::Undecided,
+                ..Self::of_any_distance(distance, pair, &Fields::ALL)
+            },
         };
         Self { steps: Some(steps), ..record }
     }
@@ -108,26 +125,29 @@ impl DistanceRecord {
                 Self::of_near_points(near.distance(), pair.witness_points(near)?)
             }
             Within::Farther(gap) => Self::of_gap(gap.gap),
-            Within::Undecided(distance) => {
-                Self { outcome: Ending::Undecided, ..Self::of_any_distance(distance, pair) }
-            }
+            Within::Undecided(distance) => Self {
+                outcome: Ending::Undecided,
+                ..Self::of_any_distance(distance, pair, &Fields::ALL)
+            },
         };
         Ok(Self { surfaces: open_bodies(pair.moving(), pair.fixed()), ..record })
     }
 
-    fn of_any_distance<B: Body>(distance: &Distance<B>, pair: &Pair<'_, B>) -> Self {
+    fn of_any_distance<B: Body>(
+        distance: &Distance<B>,
+        pair: &Pair<'_, B>,
+        requested: &Fields,
+    ) -> Self {
         let bodies = [pair.moving(), pair.fixed()];
+        let features = distance.features.filter(|_| requested.includes("features"));
         Self {
-            outcome: if distance.lower > 0.0 { Ending::Apart } else { Ending::Meeting },
-            lower: Some(distance.lower),
-            upper: Some(distance.upper),
             points: Some([
                 without_negative_zeros(distance.on_moving),
                 without_negative_zeros(distance.on_fixed),
             ]),
             normal: distance.normal.map(without_negative_zeros),
-            features: distance.features.map(|features| FeaturesRecord::of_bodies(features, bodies)),
-            ..Self::default()
+            features: features.map(|features| FeaturesRecord::of_bodies(features, bodies)),
+            ..Self::of_bounds([distance.lower, distance.upper])
         }
     }
 

@@ -36,7 +36,10 @@ pub(crate) use motion::MotionArguments;
 pub(crate) use path::PathArguments;
 pub(crate) use placed::{PlacedArguments, WithinArguments};
 pub(crate) use values::{Angles, Place, direction, normalised_pose_note, normalised_poses_note};
-use values::{angles, bytes, cuts, factor, length, picture, place, proof, solver, start, threads};
+use values::{
+    angles, answer_field, bytes, cuts, factor, length, picture, place, proof, solver, start,
+    threads,
+};
 
 /// How far can one body move before it touches another?
 ///
@@ -512,6 +515,10 @@ pub(crate) struct BatchArguments {
     /// Number of threads [default: all cores]; the results are the same, byte for byte
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
+    /// Write only these fields of results (`colltrans help json`), besides id, outcome, and message of errors. Features
+    /// and points are computed only if they are named, and the last contact only for the fields of the exit
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = answer_field(), hide_possible_values = true)]
+    pub(crate) fields: Option<Vec<String>>,
     /// Replace every mesh by the convex hull of its vertices
     #[arg(long)]
     pub(crate) hull: bool,

@@ -2,7 +2,7 @@
 //!
 //! `colltrans help json` documents the fields.
 
-use colltrans::record::{Dents, Ending, ErrorRecord, Record};
+use colltrans::record::{Dents, Ending, ErrorRecord, Fields, Record};
 use colltrans_mesh::body::Excess;
 use serde::Serialize;
 use serde_json::value::RawValue;
@@ -85,6 +85,24 @@ impl Line {
     /// Builds the line of an error.
     pub(crate) fn from_error(message: String) -> Self {
         Self { message: Some(message), ..Self::from_record(ErrorRecord::default().into()) }
+    }
+
+    /// Removes the fields that are not requested, except for the message of an error.
+    pub(crate) fn keep_fields(&mut self, requested: &Fields) {
+        self.record.keep_fields(requested);
+        if !self.is_error() && !requested.includes("message") {
+            self.message = None;
+        }
+        self.dents = self.dents.filter(|_| requested.includes("dents"));
+        self.hull = self.hull.filter(|_| requested.includes("hull"));
+        if !requested.includes("notes") {
+            self.notes.clear();
+        }
+    }
+
+    /// Returns the names of all fields of lines, each once.
+    pub(crate) fn fields() -> Vec<&'static str> {
+        [&["id", "dents", "message", "hull", "notes"], &Record::fields()[..]].concat()
     }
 
     /// Checks whether the line has no answer.

@@ -411,6 +411,22 @@ impl Question {
     ///
     /// # Errors
     /// Returns the errors of the query's method.
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::record::{Fields, Question};
+    /// use colltrans::{Cast, ConvexPolyhedron, Pose};
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0))?;
+    /// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?;
+    /// let requested = Fields::from_names(["translation".into()]);
+    /// let record = Question::Contact.record(&cast, &requested)?;
+    /// let contact = record.contact().expect("it is the record of a cast");
+    /// assert_eq!(contact.translation, Some(2.0));
+    /// assert!(contact.features.is_none() && contact.exit.is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn record(self, cast: &Cast, requested: &Fields) -> Result<Record, QueryError> {
         let needs_exit = ["exit", "exit_bounds"].iter().any(|name| requested.includes(name));
         let mut record: Record = match self {

@@ -464,6 +464,7 @@ a query reads it.
 Examples:
     colltrans batch queries.jsonl -o results.jsonl
     colltrans batch - --threads 1 < queries.jsonl
+    colltrans batch queries.jsonl --fields translation,translation_bounds
 
 `colltrans help files`: mesh formats, units, tolerances, exit codes."#;
 

@@ -65,6 +65,11 @@ pub(crate) fn solver() -> impl TypedValueParser<Value = Solver> {
     .try_map(|name| name.parse::<Solver>())
 }
 
+/// Reads the name of a field of answers.
+pub(crate) fn answer_field() -> PossibleValuesParser {
+    PossibleValuesParser::new(crate::record::Line::fields())
+}
+
 /// Parses the name of a start of the minimisation.
 pub(crate) fn start() -> impl TypedValueParser<Value = cta::Start> {
     let named = |start: cta::Start, what| PossibleValue::new(start.name()).help(what);

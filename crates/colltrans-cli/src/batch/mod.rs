@@ -21,6 +21,7 @@ use std::io::{self, BufReader, Read};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
+use colltrans::record::Fields;
 use indicatif::ProgressBar;
 
 use crate::args::BatchArguments;
@@ -45,6 +46,9 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
         folder,
         hull: arguments.hull,
         body: arguments.body,
+        written: fields_with(arguments, &[]),
+        // The message of a grazing contact has these values.
+        computed: fields_with(arguments, &["overlap", "sideways"]),
         cache: Cache::new(arguments.cache_bytes),
         replaced_file: results.replaced_file(),
     };
@@ -78,6 +82,13 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<(), Failure> {
         return Err(Failure::new(Code::Lines, message));
     }
     Ok(())
+}
+
+/// Returns the fields that the arguments request, all by default, and more fields.
+fn fields_with(arguments: &BatchArguments, more: &[&str]) -> Fields {
+    arguments.fields.as_ref().map_or(Fields::ALL, |names| {
+        Fields::from_names(names.iter().cloned().chain(more.iter().map(|&name| name.into())))
+    })
 }
 
 /// Checks that the results do not overwrite the queries.

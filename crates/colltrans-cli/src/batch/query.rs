@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::motion::Motion;
-use colltrans::record::{PairQuestion, Question, Record};
+use colltrans::record::{Fields, PairQuestion, Question, Record};
 use colltrans::{Cast, ConvexPolyhedron, Options, Pair, Pose, PoseError, Solver, cta};
 use colltrans_assembly_io::read::json_error_reason;
 use colltrans_mesh::body::{BodyKind, LoadError};
@@ -33,6 +33,10 @@ pub(crate) struct Batch {
     /// Whether meshes are replaced by their hulls, unless the query specifies it.
     pub(crate) hull: bool,
     pub(crate) body: BodyArguments,
+    /// The fields of results that are written.
+    pub(crate) written: Fields,
+    /// The fields of records that are computed.
+    pub(crate) computed: Fields,
     pub(crate) cache: Cache,
     /// The file that the results will replace.
     pub(crate) replaced_file: ReplacedFile,
@@ -60,7 +64,8 @@ impl Batch {
                 (None, Err(format!("line {number}: is longer than the accepted 64 MiB")))
             }
         };
-        let line = answer.unwrap_or_else(AnswerLine::from_error);
+        let mut line = answer.unwrap_or_else(AnswerLine::from_error);
+        line.keep_fields(&self.written);
         line.write_with_id(id, results);
         !line.is_error()
     }
@@ -83,7 +88,7 @@ impl Batch {
         match serde_json::from_slice::<Query<'_, BodySource>>(text) {
             Ok(query) => {
                 let bodies = || [&query.moving, &query.fixed].map(|source| self.build_body(source));
-                (query.id, catch_panic(number, || answer_with_notes(&query, bodies())))
+                (query.id, catch_panic(number, || self.answer_with_notes(&query, bodies())))
             }
             Err(error) => {
                 let id = serde_json::from_slice::<IdOnly<'_>>(text).ok().and_then(|only| only.id);
@@ -104,9 +109,20 @@ impl Batch {
             let moving = self.cached_body(query.moving, recent);
             let fixed = self.cached_body(query.fixed, recent);
             let (Some(moving), Some(fixed)) = (moving, fixed) else { return Ok(None) };
-            answer_with_notes(query, [moving, fixed]).map(Some)
+            self.answer_with_notes(query, [moving, fixed]).map(Some)
         });
         answer.transpose()
+    }
+
+    /// Answers a query. Appends notes about quaternions that were normalised.
+    fn answer_with_notes<B>(
+        &self,
+        query: &Query<'_, B>,
+        bodies: [BuildResult; 2],
+    ) -> Result<AnswerLine, String> {
+        let mut answer = answer_query(query, bodies, &self.computed)?;
+        answer.notes.extend(query.pose_notes());
+        Ok(answer)
     }
 
     /// Returns the body with this text; `None` if the text is invalid.
@@ -227,20 +243,11 @@ fn catch_panic<T>(number: u64, answer: impl FnOnce() -> Result<T, String>) -> Re
     Err(format!("line {number}: {what}"))
 }
 
-/// Answers a query. Appends notes about quaternions that were normalised.
-fn answer_with_notes<B>(
-    query: &Query<'_, B>,
-    bodies: [BuildResult; 2],
-) -> Result<AnswerLine, String> {
-    let mut answer = answer_query(query, bodies)?;
-    answer.notes.extend(query.pose_notes());
-    Ok(answer)
-}
-
 /// Answers a query of built bodies.
 fn answer_query<B>(
     query: &Query<'_, B>,
     [moving, fixed]: [BuildResult; 2],
+    fields: &Fields,
 ) -> Result<AnswerLine, String> {
     let moving = moving.map_err(|e| format!("moving: {e}"))?;
     let fixed = fixed.map_err(|e| format!("fixed: {e}"))?;
@@ -250,7 +257,7 @@ fn answer_query<B>(
     let poses = [pose(query.moving_pose, "moving_pose")?, pose(query.fixed_pose, "fixed_pose")?];
     let shapes = [&*moving, &*fixed];
     match (query.task()?, shapes) {
-        (Task::Pair(question), shapes) => pair_line(question, shapes, poses),
+        (Task::Pair(question), shapes) => pair_line(question, shapes, poses, fields),
         (Task::Motion(motions, clears), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
             let parts = [moving, fixed];
             let record = motion::convex_record(query, parts, &motions, clears)?;
@@ -267,7 +274,7 @@ fn answer_query<B>(
             Ok(solid_line(motion_query.answer().map_err(|e| e.to_string())?.into(), bodies))
         }
         (Task::Cast(direction), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
-            query.convex_cast_line([moving, fixed], poses, direction)
+            query.convex_cast_line([moving, fixed], poses, direction, fields)
         }
         (Task::Cast(direction), shapes) => query.solid_cast_line(shapes, poses, direction),
     }
@@ -371,6 +378,7 @@ impl<B> Query<'_, B> {
         [moving, fixed]: [&Part; 2],
         poses: [Pose; 2],
         direction: DVec3,
+        fields: &Fields,
     ) -> Result<AnswerLine, String> {
         if self.tolerance.is_some() || self.ignore_start_overlaps.is_some() {
             let fields = "`tolerance` and `ignore_start_overlaps`";
@@ -389,9 +397,9 @@ impl<B> Query<'_, B> {
             Some(QueryName::Clearance) => Question::Clearance,
             _ => Question::Contact,
         };
-        let answer = question.answer(&cast);
-        let answer = answer.map_err(|error| case::cast_failure(error, &cast).into_message())?;
-        Ok(convex_line(answer.record(&cast), [moving, fixed]))
+        let record = question.record(&cast, fields);
+        let record = record.map_err(|error| case::cast_failure(error, &cast).into_message())?;
+        Ok(convex_line(record, [moving, fixed]))
     }
 
     /// Answers a clearance of bodies at least one of which is a solid.
@@ -459,12 +467,13 @@ fn pair_line(
     question: PairQuestion,
     shapes: [&Shape; 2],
     poses: [Pose; 2],
+    fields: &Fields,
 ) -> Result<AnswerLine, String> {
     if let [Shape::Convex(moving), Shape::Convex(fixed)] = shapes {
         let placed = [moving.body.at(poses[0]), fixed.body.at(poses[1])];
         let pair = Pair::new(placed[0], placed[1]).map_err(|error| error.to_string())?;
-        let answer = question.answer(&pair).map_err(|error| error.to_string())?;
-        return Ok(convex_line(answer.record(&pair), [moving, fixed]));
+        let record = question.record(&pair, fields).map_err(|error| error.to_string())?;
+        return Ok(convex_line(record, [moving, fixed]));
     }
     let [moving, fixed] = as_solids(shapes)?;
     let bodies = [moving.get(), fixed.get()];

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use colltrans::glam::DVec3;
+use colltrans::record::Fields;
 use colltrans::solid::{AsSolid, SolidCast, StartOverlap};
 use colltrans::{
     Aabb, AnyBody, AnyPlaced, ByKind, ObstacleId, Obstacles, Placed, Pose, QueryError, Solid,
@@ -187,6 +188,8 @@ impl ReadOptions {
             folder: file.parent().unwrap_or(Path::new("")).to_owned(),
             hull: self.convex[1].hull,
             body: self.body,
+            written: Fields::ALL,
+            computed: Fields::ALL,
             cache: Cache::new(usize::MAX),
             replaced_file: ReplacedFile::new(None),
         };

@@ -529,3 +529,65 @@ fn quaternions_with_few_digits_are_normalised_with_a_note() {
     assert_eq!(results[6]["outcome"], "error");
     assert!(results[6]["message"].as_str().unwrap().contains("moving_pose: "), "{}", results[6]);
 }
+
+/// Returns the result of each query with only these fields.
+fn with_only(results: &[Value], fields: &[&str]) -> Vec<Value> {
+    let only = |result: &Value| {
+        let kept = result.as_object().unwrap().iter();
+        kept.filter(|(name, _)| fields.contains(&&***name))
+            .map(|(n, v)| (n.clone(), v.clone()))
+            .collect()
+    };
+    results.iter().map(only).collect()
+}
+
+#[test]
+fn requested_fields_have_the_values_of_complete_answers() {
+    let pair = |question: &str| {
+        format!(
+            r#"{{"moving":{BOX},"fixed":{BOX},"moving_pose":{{"translation":[-3,0.25,0.5]}},{question}}}"#
+        )
+    };
+    let motion = r#""query":"motion","moving_motion":{"slide":{"by":[4,0,0]}}"#;
+    let text = [
+        queries(20),
+        pair(r#""direction":[1,0,0],"query":"clearance""#),
+        pair(r#""direction":[-1,0,0],"query":"clearance""#),
+        pair(r#""query":"distance""#),
+        pair(motion),
+        pair(r#""direction":[0,0,0]"#),
+        pair(r#""direction":[1,0,0]"#).replace("0.25,0.5", "1,0.5"),
+        "no query".into(),
+    ];
+    let text = text.map(|lines| lines.trim_end().to_owned()).join("\n");
+    let (_, complete) = run(&text, &[]);
+    let always = ["id", "outcome", "looks"];
+    for fields in [
+        &["translation", "features"][..],
+        &["translation_bounds", "normal"],
+        &["exit", "point"],
+        &["lower", "upper", "time", "distance", "exit_bounds"],
+        &["outcome"],
+        &["message", "margin"],
+    ] {
+        let (_, some) = run(&text, &["--fields", &fields.join(",")]);
+        let kept = [fields, &always].concat();
+        let expected: Vec<_> = complete
+            .iter()
+            .map(|result| {
+                let is_error = result["outcome"] == "error";
+                let kept = if is_error { vec!["id", "outcome", "message"] } else { kept.clone() };
+                with_only(std::slice::from_ref(result), &kept).remove(0)
+            })
+            .collect();
+        assert_eq!(some, expected, "{fields:?}");
+    }
+}
+
+#[test]
+fn unknown_fields_are_rejected() {
+    let (output, results) = run(&queries(1), &["--fields", "translation,margn"]);
+    assert!(!output.status.success() && results.is_empty());
+    let message = stderr(&output);
+    assert!(message.contains("margn") && message.contains("margin"), "{message}");
+}

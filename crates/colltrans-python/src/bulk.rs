@@ -140,12 +140,12 @@ fn answer_chunk(
     mut row: Row<'_>,
     stop: &mut dyn FnMut() -> bool,
 ) {
+    row.clear_all();
     for at in 0..row.outcomes.len() {
         if at % LOOK == 0 && stop() {
             return;
         }
         row.at = at;
-        row.clear();
         ask(first + at, &mut row);
     }
 }

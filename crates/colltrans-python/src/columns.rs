@@ -188,6 +188,14 @@ impl Question {
 }
 
 impl Row<'_> {
+    /// Removes the answers of all rows of the chunk.
+    pub(crate) fn clear_all(&mut self) {
+        self.outcomes.fill(0);
+        self.numbers.iter_mut().for_each(|column| column.fill(f64::NAN));
+        self.vectors.iter_mut().for_each(|column| column.fill([f64::NAN; 3]));
+        self.features.iter_mut().for_each(|column| column.fill(NO_CORNERS));
+    }
+
     /// Removes the answer.
     pub(crate) fn clear(&mut self) {
         let at = self.at;

@@ -18,7 +18,7 @@ use crate::bulk::{Answered, Plan, thread_count};
 use crate::columns::{ON_MOVING, Question, Row, VECTORS};
 use crate::motion::{EITHER, convex_cast, solid_cast};
 use crate::repeats::{Repeats, RowAnswerer, RowAnswerers};
-use crate::rows::{AnyBody, Bodies, Table};
+use crate::rows::{AnyBody, Bodies, Poses, Table};
 use crate::solid::Solid;
 use crate::solver::options_of;
 
@@ -29,7 +29,7 @@ const CHUNK: usize = 256;
 struct Work<'a> {
     question: Question,
     bodies: [Bodies<'a>; 2],
-    poses: [Table<'a>; 2],
+    poses: [Poses<'a>; 2],
     with: RowQuery<'a>,
     /// Fields of records that become columns.
     fields: Fields,
@@ -63,12 +63,12 @@ enum Motions<'a> {
 }
 
 impl Motions<'_> {
-    fn get(&self, row: usize, start: &Table<'_>) -> Result<Motion, String> {
+    fn get(&self, row: usize, start: &Poses<'_>) -> Result<Motion, String> {
         let table = match self {
             Self::Listed(all) => return Ok(all[if all.len() == 1 { 0 } else { row }].clone()),
             Self::Numbers(table) => table,
         };
-        let (pose, of) = (start.pose(row)?, table.row(row));
+        let (pose, of) = (start.get(row)?, table.row(row));
         let three = |k: usize| DVec3::from_slice(&of[3 * k..]);
         match of {
             [_, _, _] => Motion::translation(pose, three(0)),
@@ -113,7 +113,7 @@ impl<'a> Work<'a> {
             to.set_motion(self.question, &record);
             return Ok(());
         }
-        let poses = [self.poses[0].pose(row)?, self.poses[1].pose(row)?];
+        let poses = [self.poses[0].get(row)?, self.poses[1].get(row)?];
         let RowQuery::Direction { directions, graze_tolerances, min_gaps, options } = &self.with
         else {
             let record = self.answer_placed([moving, fixed], poses, row)?;
@@ -261,7 +261,7 @@ pub(crate) fn ask_many<'py>(
             Bodies { name: "moving", all: &all[0], index: index[0] },
             Bodies { name: "fixed", all: &all[1], index: index[1] },
         ],
-        poses: [table("moving_pose")?, table("fixed_pose")?],
+        poses: [Poses::new(table("moving_pose")?), Poses::new(table("fixed_pose")?)],
         with,
         fields: record_fields(&columns, featured),
     };

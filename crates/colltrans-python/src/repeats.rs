@@ -18,7 +18,7 @@ use colltrans::{
     QueryError,
 };
 
-use crate::rows::{Bodies, Table};
+use crate::rows::{Bodies, Poses, Table};
 
 /// Maximum number of groups that use faces, because faces take some 100 KB per group. The largest groups are
 /// chosen.
@@ -56,7 +56,7 @@ impl<'a> Repeats<'a> {
     pub(crate) fn find(
         n: usize,
         bodies: &[Bodies<'a>; 2],
-        poses: &[Table<'a>; 2],
+        poses: &[Poses<'a>; 2],
         directions: &Table<'_>,
         threads: usize,
         is_asked: impl Fn(usize) -> bool + Sync,
@@ -105,7 +105,7 @@ impl<'a> Repeats<'a> {
     }
 
     /// Sets the poses of the groups for which faces save time. The other groups have no poses.
-    fn keep_those_that_pay(&mut self, poses: &[Table<'a>; 2]) {
+    fn keep_those_that_pay(&mut self, poses: &[Poses<'a>; 2]) {
         let pays = |group: &&mut Group<'a>| {
             let [moving, fixed] = group.bodies;
             FixedRotations::break_even_casts(moving, fixed).is_some_and(|rows| group.rows >= rows)
@@ -113,7 +113,7 @@ impl<'a> Repeats<'a> {
         let mut paying: Vec<&mut Group<'a>> = self.groups.iter_mut().filter(pays).collect();
         paying.sort_by_key(|group| (std::cmp::Reverse(group.rows), group.first));
         for group in paying.into_iter().take(MOST_GROUPS) {
-            let [moving, fixed] = [0, 1].map(|k| poses[k].pose(group.first));
+            let [moving, fixed] = [0, 1].map(|k| poses[k].get(group.first));
             group.poses = moving.ok().zip(fixed.ok()).map(|(moving, fixed)| [moving, fixed]);
         }
         if self.groups.iter().all(|group| group.poses.is_none()) {
@@ -125,7 +125,7 @@ impl<'a> Repeats<'a> {
 /// The bodies and rotations of all rows.
 struct Rows<'r, 'a> {
     bodies: &'r [Bodies<'a>; 2],
-    poses: &'r [Table<'a>; 2],
+    poses: &'r [Poses<'a>; 2],
 }
 
 impl<'a> Rows<'_, 'a> {
@@ -137,8 +137,8 @@ impl<'a> Rows<'_, 'a> {
 
     /// Checks whether the rotations of two rows have the same bits.
     fn have_same_rotations(&self, a: usize, b: usize) -> bool {
-        self.poses.iter().all(|table| {
-            let bits = |row| table.rotation(row).map(f64::to_bits);
+        self.poses.iter().all(|poses| {
+            let bits = |row| poses.table.rotation(row).map(f64::to_bits);
             bits(a).eq(bits(b))
         })
     }
@@ -147,7 +147,8 @@ impl<'a> Rows<'_, 'a> {
     fn hash(&self, row: usize) -> u32 {
         let bodies =
             self.bodies.iter().filter_map(|side| side.index.map(|index| index[row] as u64));
-        let several = self.poses.iter().filter(|table| !table.is_single());
+        let several =
+            self.poses.iter().map(|poses| &poses.table).filter(|table| !table.is_single());
         let rotations = several.flat_map(|table| table.rotation(row)).map(f64::to_bits);
         // Multiplication moves differences to higher bits only, so they are moved back in between.
         let mixed = bodies.chain(rotations).fold(0, |hash: u64, bits| {

@@ -82,10 +82,11 @@ impl<'a> Table<'a> {
     /// Iterates over the numbers of a pose that define its rotation.
     pub(crate) fn rotation(&self, row: usize) -> impl Iterator<Item = f64> + use<'a> {
         let row = self.row(row);
-        // Entries of the first three columns, if the row is a matrix.
-        let of_matrix = row.len() > 7;
-        let kept = move |k: &usize| if of_matrix { k % 4 < 3 && *k < 12 } else { *k >= 3 };
-        (0..row.len()).filter(kept).map(|k| row[k])
+        // A quaternion follows a translation; in a matrix the translation is the fourth column.
+        let (quaternion, matrix) =
+            if row.len() > 7 { (&row[..0], &row[..12]) } else { (&row[3..], &row[..0]) };
+        let columns = matrix.as_chunks::<4>().0.iter().flat_map(|[x, y, z, _]| [*x, *y, *z]);
+        quaternion.iter().copied().chain(columns)
     }
 
     /// Reads a pose: a translation, a translation with a quaternion, or a matrix of three or four rows.
@@ -106,5 +107,27 @@ impl<'a> Table<'a> {
             r => of_matrix(r),
         };
         pose.map_err(|what| format!("{}: {what}", self.name))
+    }
+}
+
+/// The poses of a body, one for all rows or one for each. A single pose is read once.
+pub(crate) struct Poses<'a> {
+    pub(crate) table: Table<'a>,
+    single: Option<Result<Pose, String>>,
+}
+
+impl<'a> Poses<'a> {
+    pub(crate) fn new(table: Table<'a>) -> Self {
+        let single = table.is_single().then(|| table.pose(0));
+        Self { table, single }
+    }
+
+    /// Returns the pose of a row.
+    pub(crate) fn get(&self, row: usize) -> Result<Pose, String> {
+        match &self.single {
+            Some(Ok(pose)) => Ok(*pose),
+            Some(Err(why)) => Err(why.clone()),
+            None => self.table.pose(row),
+        }
     }
 }

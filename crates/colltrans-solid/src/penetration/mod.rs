@@ -15,7 +15,8 @@ pub trait SolidPenetration {
     /// Computes the distance of the surfaces of two bodies, also if one lies inside the other.
     ///
     /// [`Pair::distance`] is 0 for nested bodies. For these this query computes the thickness of the wall between the
-    /// surfaces. For bodies that are apart, both queries have equal bounds.
+    /// surfaces. For bodies that are apart, both queries have equal bounds. Of a union of pieces that overlap, facets
+    /// within the union count as surface.
     ///
     /// # Errors
     /// Returns [`QueryError::NotASolid`] for a rounded body.

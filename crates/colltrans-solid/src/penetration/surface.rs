@@ -22,6 +22,8 @@ use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
 
 /// The distance of the surfaces of two solids.
+///
+/// The surface consists of all facets. Of a union of pieces that overlap, it includes facets within the union.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -93,7 +95,8 @@ impl Solid {
     ///
     /// # Errors
     /// Returns [`SignedDistanceError::Point`] for the first point with a coordinate that is not finite or out of range,
-    /// and [`SignedDistanceError::Solid`] for a rounded solid.
+    /// and [`SignedDistanceError::Solid`] for a rounded solid. [`SignedDistanceError::Query`] is the
+    /// error of the query of a point.
     ///
     /// ```
     /// use colltrans::glam::DVec3;

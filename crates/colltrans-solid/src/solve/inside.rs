@@ -6,6 +6,8 @@
 //!   one axis of the world and then along another, so that it passes no edge.
 //! - A facet ahead counts 1 if the ray leaves through it, and -1 if it enters. The sum is the winding number: the
 //!   number of pieces that contain the point.
+//! - If all points of the shell that are tried lie on the other surface, the shell touches a piece along facets. It is
+//!   then inside if one of the points is inside another piece.
 
 use std::cmp::Ordering;
 
@@ -15,6 +17,7 @@ use super::line;
 use super::projected::Projected;
 use super::scene::{ExactPoint, PairFrame, PlacedBody, PlacedVertex, place_exactly};
 use super::triangle::{Triangle, lies_on};
+use crate::body::ShellBounds;
 use crate::body::edges::NO_NEIGHBOUR;
 use colltrans_convex::body::Aabb;
 use colltrans_kernel::extended::ExtendedPoint;
@@ -70,7 +73,7 @@ fn is_shell_inside(scene: &PairFrame, own: &PlacedBody, other: &PlacedBody, tria
         let [p, q, _] = own.corners(triangle as usize);
         return [p, q].iter().any(|end| match winding_number(scene, other, end) {
             Some(winding) => winding > 0,
-            None => line::is_inside_other_piece(scene, other, end),
+            None => is_inside_other_piece(scene, other, end),
         });
     }
     let mut seen = [triangle; MOST_TRIANGLES];
@@ -84,8 +87,7 @@ fn is_shell_inside(scene: &PairFrame, own: &PlacedBody, other: &PlacedBody, tria
                 return winding > 0;
             }
         }
-        for weights in WEIGHTS {
-            let mean = FacetMean::new(scene, corners, weights);
+        for mean in facet_means(scene, corners) {
             if let Some(winding) = winding_number(scene, other, &mean) {
                 return winding > 0;
             }
@@ -97,7 +99,16 @@ fn is_shell_inside(scene: &PairFrame, own: &PlacedBody, other: &PlacedBody, tria
             }
         }
     }
-    false
+    // All points lie on the other surface. A shell that only touches one piece may be inside another one.
+    seen[..count].iter().any(|&t| {
+        let mut means = facet_means(scene, own.corners(t as usize));
+        means.any(|mean| is_inside_other_piece(scene, other, &mean))
+    })
+}
+
+/// Iterates over points of a facet.
+fn facet_means(scene: &PairFrame, corners: [PlacedVertex; 3]) -> impl Iterator<Item = FacetMean> {
+    WEIGHTS.into_iter().map(move |weights| FacetMean::new(scene, corners, weights))
 }
 
 /// A weighted mean of the corners of a facet.
@@ -142,39 +153,61 @@ impl ExactPoint for FacetMean {
 /// Computes the winding number of a point: the number of closed shells of a solid around the point, where the wall of a
 /// cavity counts -1. `None` if the point lies on a closed shell.
 fn winding_number(scene: &PairFrame, side: &PlacedBody, point: &impl ExactPoint) -> Option<i32> {
-    winding_below(scene, side, point, 0)
+    let mut winding = 0;
+    let is_off = visit_facets(scene, side, point, 0, &mut |_, count| {
+        winding += count?;
+        Some(())
+    });
+    is_off.map(|()| winding)
 }
 
-/// Computes the contribution of one node to the winding number; `None` if the point lies on one of its facets.
-fn winding_below(
+/// Checks whether a point is inside a body of the solid on whose surface it does not lie.
+fn is_inside_other_piece(scene: &PairFrame, side: &PlacedBody, point: &impl ExactPoint) -> bool {
+    let body = |shell: &ShellBounds| side.solid.body_numbers()[shell.triangle as usize];
+    let [first, others @ ..] = side.solid.shell_bounds() else { return false };
+    if others.iter().all(|shell| body(shell) == body(first)) {
+        return false;
+    }
+    let (mut ahead, mut on) = (Vec::new(), Vec::new());
+    visit_facets(scene, side, point, 0, &mut |t, count| {
+        match count {
+            Some(0) => {}
+            Some(count) => ahead.push((t, count)),
+            None => on.push(t),
+        }
+        Some(())
+    });
+    line::is_around(side.solid, &ahead, &on)
+}
+
+/// Calls `take` for the facets of closed shells in a node that are ahead of a point or contain it, until it returns
+/// `None`. It receives a facet's contribution to the winding number, or `None` if the point lies on the facet.
+fn visit_facets(
     scene: &PairFrame,
     side: &PlacedBody,
     point: &impl ExactPoint,
     at: u32,
-) -> Option<i32> {
+    take: &mut impl FnMut(usize, Option<i32>) -> Option<()>,
+) -> Option<()> {
     let (p, noise) = (point.query_position(), 4.0 * scene.noise);
     let node = &side.solid.nodes()[at as usize];
     let projected = Projected::new(scene, side, at as usize);
     let Aabb { low, high } = projected.bounds.expanded(noise);
     if (0..2).any(|k| p[k] < low[k] || p[k] > high[k]) || p.z > high.z {
-        return Some(0);
+        return Some(());
     }
     if !node.is_leaf() {
         let [first, second] = node.child_positions(at);
-        return Some(
-            winding_below(scene, side, point, first)? + winding_below(scene, side, point, second)?,
-        );
+        visit_facets(scene, side, point, first, take)?;
+        return visit_facets(scene, side, point, second, take);
     }
     let axes = lateral_axes(scene);
-    let mut winding = 0;
     // Open shells enclose no volume.
     for t in node.facets().filter(|&t| !side.solid.is_open(t)) {
-        if lies_on(scene, point, &Triangle::new(side, t)) {
-            return None;
-        }
-        winding += crossing_sign(scene, side.corners(t), point, axes);
+        let is_on = lies_on(scene, point, &Triangle::new(side, t));
+        take(t, (!is_on).then(|| crossing_sign(scene, side.corners(t), point, axes)))?;
     }
-    Some(winding)
+    Some(())
 }
 
 /// Returns the two axes of the world other than the one with the largest component of the direction.

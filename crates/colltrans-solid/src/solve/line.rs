@@ -143,21 +143,6 @@ fn is_inside_past<const N: usize>(
     PointOnLine::<N>::past_facet(scene, line, facet.side, &facet.corners)?.is_inside()
 }
 
-/// Checks whether a point on the surface of a solid is inside another body of the solid.
-pub(super) fn is_inside_other_piece(
-    scene: &PairFrame,
-    side: &PlacedBody,
-    point: &PlacedVertex,
-) -> bool {
-    let line = Line { from: point, way: LineDirection::Query { forward: true } };
-    let is_inside_one = || {
-        PointOnLine::<SMALL_LIMBS>::from_start(scene, &line, side)
-            .is_inside()
-            .or_else(|| PointOnLine::<PRODUCT_LIMBS>::from_start(scene, &line, side).is_inside())
-    };
-    side.solid.shell_bounds().len() > 1 && is_inside_one().unwrap_or_default()
-}
-
 /// Checks whether a line meets a facet within its face, where the face neither bends nor ends.
 fn is_within_a_face(scene: &PairFrame, line: &Line, facet: &Triangle) -> bool {
     let [a, b, c] = &facet.corners;
@@ -399,8 +384,9 @@ impl<'r, 'a, const N: usize> PointOnLine<'r, 'a, N> {
     }
 }
 
-/// Checks whether a point is inside a body, from the facets ahead of the point and the facets that contain it.
-fn is_around(solid: &Solid, ahead: &[(usize, i32)], on: &[usize]) -> bool {
+/// Checks whether a point is inside a body, from the facets ahead of the point with their signs, and the facets that
+/// contain it.
+pub(super) fn is_around(solid: &Solid, ahead: &[(usize, i32)], on: &[usize]) -> bool {
     if on.is_empty() {
         return ahead.iter().map(|(_, count)| count).sum::<i32>() > 0;
     }

@@ -4,7 +4,8 @@
 //! 2. two facets with the same orientation share a part of a plane; or
 //! 3. an edge of one runs through a facet or along an edge of the other, and the wedges of material around it share
 //!    interior points; or
-//! 4. a shell of one lies inside the other and touches its surface in isolated points at most.
+//! 4. a shell of one lies inside the other and touches its surface in isolated points at most; or
+//! 5. a shell of one lies on the surface of a piece of the other, but inside another piece.
 //!
 //! Nodes whose boxes or slabs are separated are cut. All other pairs are decided in exact arithmetic. With a minimum
 //! gap, two facets count if they are certainly nearer than the gap, computed with its error. Proof, and the cases of

@@ -7,7 +7,9 @@ use colltrans_convex::{
 use colltrans_solid::{
     Overlap, Solid, SolidCast, SolidError, SolidOptions, SolidOverlap, SolidPair, StartOverlap,
 };
-use colltrans_testkit::shapes::{Mesh, extruded, ring};
+use colltrans_testkit::cases;
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::{Mesh, block, extruded, ring};
 use colltrans_testkit::solids::{bolt, pin, slab, turned, washer};
 use glam::{DMat3, DQuat, DVec3};
 
@@ -314,6 +316,72 @@ fn pieces_that_overlap_are_no_thin_walls() {
     let loose = cuboid([-1.5; 3], [-1.0; 3]);
     let all = Solid::from_pieces([&block, &rod, &loose]).expect("three pieces");
     assert_eq!(all.shrink_report(0.05).inverted, []);
+}
+
+#[test]
+fn a_body_in_a_filled_cavity_overlaps() {
+    let cube = cuboid([0.0; 3], [1.0; 3]);
+    let wall = hollow_box([[-1.0; 3], [2.0; 3]], Some([[0.0; 3], [1.0; 3]]));
+    assert!(!cast(&cube, &wall, DVec3::X).overlaps());
+    let filled = Solid::from_pieces([&wall, &cuboid([-0.5; 3], [1.5; 3])]).expect("two pieces");
+    for (moving, fixed) in [(&cube, &filled), (&filled, &cube)] {
+        let cast = cast(moving, fixed, DVec3::X);
+        assert!(cast.overlaps());
+        assert!(matches!(cast.clearance().expect("an answer"), Clearance::Overlapping(_)));
+    }
+    let beside = Solid::from_pieces([&wall, &cuboid([1.0, 0.0, 0.0], [3.0, 1.0, 1.0])]);
+    assert!(!cast(&cube, &beside.expect("two pieces"), DVec3::X).overlaps());
+}
+
+/// A box with or without a cavity.
+fn hollow_box([low, high]: [[f64; 3]; 2], cavity: Option<[[f64; 3]; 2]>) -> Solid {
+    let outside = block(low, high);
+    solid(&match cavity {
+        Some([low, high]) => outside.joined(&block(low, high).reversed()),
+        None => outside,
+    })
+}
+
+/// A box overlaps a union of hollow boxes if it has a cell of one of them. All corners are integers, so that faces lie
+/// on each other.
+#[test]
+fn boxes_overlap_unions_of_hollow_boxes_that_have_one_of_their_cells() {
+    let mut random = Random::new(2030);
+    let mut counts = [0; 2];
+    let any_box = |random: &mut Random, [low, high]: [i64; 2], least: i64| {
+        let lows = [0; 3].map(|_| random.int(low, high - least));
+        [lows, lows.map(|x| random.int(x + least, high))]
+    };
+    let corners = |ends: [[i64; 3]; 2]| ends.map(|corner| corner.map(|x| x as f64));
+    let contains = |[low, high]: [[i64; 3]; 2], cell: [i64; 3]| {
+        (0..3).all(|k| low[k] <= cell[k] && cell[k] < high[k])
+    };
+    for round in 0..cases(4_000) {
+        let moving = any_box(&mut random, [0, 5], 1);
+        let outside = any_box(&mut random, [0, 5], 3);
+        let cavity = [0, 1, 2].map(|k| {
+            let [low, high] = outside.map(|corner| corner[k]);
+            let first = random.int(low + 1, high - 2);
+            [first, random.int(first + 1, high - 1)]
+        });
+        let cavity = [0, 1].map(|end| cavity.map(|ends| ends[end]));
+        let pieces = [(outside, Some(cavity)), (any_box(&mut random, [0, 5], 1), None)];
+        let is_filled = |cell| {
+            pieces.iter().any(|(outside, cavity)| {
+                contains(*outside, cell) && !cavity.is_some_and(|cavity| contains(cavity, cell))
+            })
+        };
+        let cells = (0..125).map(|k| [k % 5, k / 5 % 5, k / 25]);
+        let expected = cells.filter(|&cell| contains(moving, cell)).any(is_filled);
+        let fixed =
+            pieces.map(|(outside, cavity)| hollow_box(corners(outside), cavity.map(corners)));
+        let fixed = Solid::from_pieces(&fixed).expect("two pieces");
+        let moving = hollow_box(corners(moving), None);
+        assert_eq!(cast(&moving, &fixed, DVec3::X).overlaps(), expected, "{round}: {pieces:?}");
+        assert_eq!(cast(&fixed, &moving, DVec3::X).overlaps(), expected, "{round}: {pieces:?}");
+        counts[usize::from(expected)] += 1;
+    }
+    assert!(counts.iter().all(|&n| n > cases(200)), "{counts:?}");
 }
 
 #[test]

@@ -319,8 +319,6 @@ def building(run: Row) -> str:
 
 
 VERDICTS = ("holds", "better than the paper", "undecided", "does not hold")
-#: Both readings of "thin": the ends of the claims' names, and what they mean.
-READINGS = {"-stretch": "a fixed stretch of 100", "-meridians": "16 meridians at any size"}
 
 
 def laboratory(folder: Path = FOLDER) -> tuple[Row, Row]:
@@ -371,7 +369,6 @@ def claims(folder: Path = FOLDER) -> str:
         verdict = claim["verdict"] + (f" (again: {second})" if second != claim["verdict"] else "")
         name = f"{claim['statement']} (`{claim['id']}`)"
         text += f"| {name} | {claim['paper']}; {claim['place']} | {here} | {verdict} |\n"
-    text += readings(run)
     text += "\nReasons, where a claim does not hold or is undecided, with counts from the data:\n\n"
     for claim in run["claims"]:
         if claim["why"]:
@@ -382,30 +379,6 @@ def claims(folder: Path = FOLDER) -> str:
 def intervals_overlap(claim: Row, other: Row) -> bool:
     pairs = zip(claim["measured"], other["measured"], strict=True)
     return all(a["low"] <= b["high"] and b["low"] <= a["high"] for a, b in pairs)
-
-
-def readings(run: Row) -> str:
-    """Returns the table of the claims that a run judges under both readings of "thin"."""
-    first, second = READINGS
-    named = by_name(run)
-    names = [name.removesuffix(first) for name in named if name.endswith(first)]
-    if not names:
-        return ""
-    pairs = {name: [named[name + first], named[name + second]] for name in names}
-    one, other = READINGS.values()
-    text = (
-        '\nThe paper\'s words are "very thin and stretched out", without a number. '
-        "Its sentences, with both readings:\n\n"
-        f"| sentence | {one} | {other} |\n|---|---|---|\n"
-    )
-    for name, both in pairs.items():
-        a, b = (f"{estimate(claim['measured'][0])}, {claim['verdict']}" for claim in both)
-        text += f"| `{name}` | {a} | {b} |\n"
-    kept = [sum(both[k]["verdict"] in VERDICTS[:2] for both in pairs.values()) for k in (0, 1)]
-    return (
-        f"{text}\nWith {one}, {kept[0]} of these {len(pairs)} hold or are better than in the "
-        f"paper, with {other} {kept[1]}.\n"
-    )
 
 
 if __name__ == "__main__":

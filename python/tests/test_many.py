@@ -200,10 +200,10 @@ def test_an_interrupt_ends_the_call() -> None:
 import numpy as np, colltrans, sys, time
 random = np.random.default_rng(0)
 body = colltrans.ConvexPolyhedron(random.normal(size=(2000, 3)))
-poses = random.normal(size=(4_000_000, 3)) + [0, 0, 9]
+poses = random.normal(size=(4_000_000, 7)) + [0, 0, 9, 0, 0, 0, 0]
 print("ready", flush=True)
 try:
-    colltrans.cast_many(body, body, [0, 0, -1], moving_pose=poses)
+    colltrans.cast_many(body, body, [0, 0, -1], moving_pose=poses, threads=2)
 except KeyboardInterrupt:
     print("interrupted", flush=True)
 """
@@ -211,7 +211,8 @@ except KeyboardInterrupt:
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
-        time.sleep(1)
+        # The call takes seconds: each row has a rotation of its own.
+        time.sleep(0.2)
         sent = time.perf_counter()
         process.send_signal(signal.SIGINT)
         assert process.stdout.readline() == "interrupted\n"

@@ -269,7 +269,7 @@ fn effect_claim(sweeps: &[Sweeps; 2]) -> Claim {
         other.each[WALK]
     );
     judged("19-affects", vec![at.each[CTA], at.each[WALK]], details, || {
-        Reason::Implementation.because("The parameter changes the count by less than a quarter.")
+        Reason::Implementation.because("The parameter changes the count by about a quarter.")
     })
 }
 

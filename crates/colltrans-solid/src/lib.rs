@@ -9,7 +9,7 @@
 //!   (`nearest`)
 //! - [`cast`]: clearance by boxes and convex hulls, least tolerances, proofs and their verification
 //! - [`pair`]: distances and their proofs
-//! - [`penetration`]: distances of nested surfaces, signed distances of points
+//! - [`penetration`]: distances of nested surfaces, signed distances of points, common parts, depths
 //! - [`kinds`]: bodies and answers of either kind
 
 #![allow(
@@ -47,5 +47,8 @@ pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
 #[doc(hidden)]
 pub use pair::SolidPairSearch;
 pub use pair::{OverlapDepth, SolidPair};
-pub use penetration::{SignedDistance, SignedDistanceError, SolidPenetration, SurfaceDistance};
+pub use penetration::{
+    CommonPart, InnerPair, Relation, SignedDistance, SignedDistanceError, SolidDepth,
+    SolidPenetration, SurfaceDistance, VolumeOptions,
+};
 pub use solve::{Overlap, SolidContact, SolidGap, SolidNear, SolidSteps, Workspace};

@@ -65,8 +65,8 @@ pub enum QueryError {
         /// the body is left.
         extent: f64,
     },
-    /// A convex body cannot be converted to a solid.
-    #[error("the convex body cannot be converted to a solid: {reason}")]
+    /// A body cannot be used as a solid.
+    #[error("the body cannot be used as a solid: {reason}")]
     NotASolid {
         /// Message of the failed conversion.
         reason: String,

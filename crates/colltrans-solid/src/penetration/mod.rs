@@ -1,9 +1,19 @@
-//! Queries about solids that may overlap or lie inside each other.
+//! The common part of two solids, their depth, and distances of surfaces, also of bodies inside each other.
 //!
 //! - `surface`: the distance of two surfaces, also if one lies inside the other body, and signed distances of points.
+//! - `common`: how two bodies lie to each other, and their common part, with its volume by `cells`.
+//! - `depth`: the length of the shortest translation that separates two overlapping bodies, from below by `inner` and `cover`.
 
+mod cells;
+mod common;
+mod cover;
+mod depth;
+mod inner;
 mod surface;
 
+pub use common::{CommonPart, Relation, VolumeOptions};
+pub use depth::SolidDepth;
+pub use inner::InnerPair;
 pub use surface::{SignedDistance, SignedDistanceError, SurfaceDistance};
 
 use crate::body::Solid;
@@ -36,10 +46,69 @@ pub trait SolidPenetration {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     fn surface_distance(&self) -> Result<SurfaceDistance, QueryError>;
+
+    /// Computes how two bodies lie to each other, and the volume, the box and a point of their common part.
+    ///
+    /// # Errors
+    /// Returns [`QueryError::NotASolid`] for a rounded body.
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::solid::{Relation, SolidPair, SolidPenetration, VolumeOptions};
+    /// use colltrans::{ConvexPolyhedron, Pair, Pose};
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::splat(2.0))?;
+    /// let there = Pose::from_translation(DVec3::new(1.0, 1.5, 0.0))?;
+    /// let pair = Pair::between(cube.at(Pose::IDENTITY), cube.at(there))?;
+    /// let common = pair.common_part(VolumeOptions::default())?;
+    /// assert!(matches!(common.relation, Relation::Crossing(_)) && common.is_accurate);
+    /// assert!(common.volume[0] <= 1.0 && 1.0 <= common.volume[1]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn common_part(&self, options: VolumeOptions) -> Result<CommonPart, QueryError>;
+
+    /// Computes bounds of the depth: the length of the shortest translation of the moving body after which the
+    /// interiors have no common point.
+    ///
+    /// Both bounds are proven. The upper one is the length of the shortest translation that was found, and a shorter one
+    /// may exist. The lower one is the depth of convex bodies inside the solids. For convex solids both bounds are those
+    /// of their hulls, unless these are thinner than rounding errors.
+    ///
+    /// The depth is 0 if the overlap test finds none, or if a body has no closed shell. An open shell that passes through
+    /// the other body counts as overlap if both bodies have a closed shell.
+    ///
+    /// # Errors
+    /// Returns the error of [`Pair::distance`].
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::solid::{SolidPair, SolidPenetration};
+    /// use colltrans::{ConvexPolyhedron, Pair, Pose, Solid};
+    ///
+    /// // A post of width 1 stands 1/2 deep in the corner of a step.
+    /// let low = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(4.0, 2.0, 1.0))?;
+    /// let high = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(2.0, 2.0, 3.0))?;
+    /// let step = Solid::from_pieces([&low, &high])?;
+    /// let post = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 4.0))?;
+    /// let there = Pose::from_translation(DVec3::new(3.0, 0.5, 0.5))?;
+    /// let depth = Pair::between(post.at(there), step.at(Pose::IDENTITY))?.depth()?;
+    /// assert!(depth.lower <= 0.5 && 0.5 <= depth.upper && depth.upper < 0.5 + 1e-9);
+    /// assert!(depth.lower > 0.49);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn depth(&self) -> Result<SolidDepth, QueryError>;
 }
 
 impl SolidPenetration for Pair<'_, Solid> {
     fn surface_distance(&self) -> Result<SurfaceDistance, QueryError> {
         surface::surface_distance(self)
+    }
+
+    fn common_part(&self, options: VolumeOptions) -> Result<CommonPart, QueryError> {
+        common::common_part(self, options)
+    }
+
+    fn depth(&self) -> Result<SolidDepth, QueryError> {
+        depth::depth(self)
     }
 }

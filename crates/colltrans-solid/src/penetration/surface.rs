@@ -119,25 +119,33 @@ impl Solid {
         points: &[DVec3],
     ) -> Result<Vec<SignedDistance>, SignedDistanceError> {
         check_is_not_rounded(self.radius())?;
-        let origin = ConvexPolyhedron::from_points(&[DVec3::ZERO])
-            .map_err(|error| QueryError::NotASolid { reason: error.to_string() })?;
-        let origin = origin.as_surface()?;
-        let distance = |(index, at): (usize, &DVec3)| {
-            let place = Pose::from_translation(*at)
-                .map_err(|reason| SignedDistanceError::Point { index, reason })?;
-            Ok(signed_distance(origin.at(place), self.at(pose))?)
-        };
-        points.iter().enumerate().map(distance).collect()
+        core_distances(self.at(pose), points)
     }
 }
 
+/// Computes the signed distances of points from the surface of a solid without its radius.
+pub(super) fn core_distances(
+    solid: Placed<'_, Solid>,
+    points: &[DVec3],
+) -> Result<Vec<SignedDistance>, SignedDistanceError> {
+    let origin = ConvexPolyhedron::from_points(&[DVec3::ZERO])
+        .map_err(|error| QueryError::NotASolid { reason: error.to_string() })?;
+    let origin = origin.as_surface()?;
+    let distance = |(index, at): (usize, &DVec3)| {
+        let place = Pose::from_translation(*at)
+            .map_err(|reason| SignedDistanceError::Point { index, reason })?;
+        Ok(signed_distance(origin.at(place), solid)?)
+    };
+    points.iter().enumerate().map(distance).collect()
+}
+
 /// Computes the signed distance of a point, a body of one facet without area, from the surface of a solid.
-pub(super) fn signed_distance(
+fn signed_distance(
     point: Placed<'_, Solid>,
     solid: Placed<'_, Solid>,
 ) -> Result<SignedDistance, QueryError> {
     let SurfaceDistance { lower, upper, on_fixed, triangles, place, steps, .. } =
-        surface_distance(&Pair::new(point, solid)?)?;
+        core_distance(&Pair::new(point, solid)?)?;
     let is_inside = matches!(place, Some(Overlap::MovingInside(_)));
     let [lower, upper] = if is_inside { [-upper, -lower] } else { [lower, upper] };
     Ok(SignedDistance { lower, upper, nearest: on_fixed, triangle: triangles[1], is_inside, steps })
@@ -148,6 +156,11 @@ pub(super) fn surface_distance(pair: &Pair<'_, Solid>) -> Result<SurfaceDistance
     for body in [pair.moving(), pair.fixed()] {
         check_is_not_rounded(body.radius())?;
     }
+    core_distance(pair)
+}
+
+/// Computes the distance of the surfaces of two bodies without their radii.
+pub(super) fn core_distance(pair: &Pair<'_, Solid>) -> Result<SurfaceDistance, QueryError> {
     let scene = pair_scene(pair)?;
     let found = search_nearest(pair, &scene, SearchEnd::LEAST, false);
     let mut steps = found.steps;

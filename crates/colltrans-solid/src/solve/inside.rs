@@ -10,6 +10,7 @@
 //!   then inside if one of the points is inside another piece.
 
 use std::cmp::Ordering;
+use std::collections::HashSet;
 
 use glam::DVec3;
 
@@ -33,34 +34,46 @@ pub(crate) const WEIGHTS: [[f64; 3]; 4] =
 
 /// Finds a shell of one body that lies inside the other, and returns a triangle of it; `None` if there is none.
 pub(crate) fn shell_inside(scene: &PairFrame, moving: bool) -> Option<u32> {
+    shells_inside(scene, moving).next()
+}
+
+/// Finds the shells of one body that lie inside the other, and returns a triangle of each.
+pub(crate) fn shells_inside(scene: &PairFrame, moving: bool) -> impl Iterator<Item = u32> {
     let (own, other) = (scene.side(moving), scene.side(!moving));
-    if !other.solid.has_interior() {
-        return None;
-    }
-    let room = Projected::new(scene, other, 0);
-    for span in own.solid.shell_bounds() {
-        let (middle, half) = (span.bounds.center(), span.bounds.side_lengths() * 0.5);
-        let at = own.view * middle + own.view_offset;
-        let rows = own.view.transpose();
-        let swell = own.max_displacement();
-        let extent = [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| r.abs().dot(half));
-        let extent = DVec3::from_array(extent) + DVec3::splat(4.0 * scene.noise);
-        let grown = |by: f64| {
-            let extent = (extent + by).max(DVec3::ZERO);
-            Aabb { low: at - extent, high: at + extent }
-        };
-        // A shell that extends beyond the other body's box is not inside it. The offset may shorten its extent by
-        // `swell`.
-        let around = grown(swell);
-        let within = room.bounds.expanded(16.0 * scene.noise).contains_box(&grown(-swell));
-        // Boxes that are not aligned are loose. Then every shell whose box meets the other one is tested.
-        let meets = room.bounds.intersects(&around);
-        let aligned = own.aligned == [true; 3] && other.aligned == [true; 3];
-        if meets && (within || !aligned) && is_shell_inside(scene, own, other, span.triangle) {
-            return Some(span.triangle);
-        }
-    }
-    None
+    let room = other.solid.has_interior().then(|| Projected::new(scene, other, 0));
+    room.into_iter()
+        .flat_map(move |room| {
+            let spans = own.solid.shell_bounds().iter();
+            spans.filter(move |span| is_span_inside(scene, (own, other), &room, span))
+        })
+        .map(|span| span.triangle)
+}
+
+/// Checks whether a shell of one body lies inside the other one, whose bounds are given.
+fn is_span_inside(
+    scene: &PairFrame,
+    (own, other): (&PlacedBody, &PlacedBody),
+    room: &Projected,
+    span: &ShellBounds,
+) -> bool {
+    let (middle, half) = (span.bounds.center(), span.bounds.side_lengths() * 0.5);
+    let at = own.view * middle + own.view_offset;
+    let rows = own.view.transpose();
+    let swell = own.max_displacement();
+    let extent = [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| r.abs().dot(half));
+    let extent = DVec3::from_array(extent) + DVec3::splat(4.0 * scene.noise);
+    let grown = |by: f64| {
+        let extent = (extent + by).max(DVec3::ZERO);
+        Aabb { low: at - extent, high: at + extent }
+    };
+    // A shell that extends beyond the other body's box is not inside it. The offset may shorten its extent by
+    // `swell`.
+    let around = grown(swell);
+    let within = room.bounds.expanded(16.0 * scene.noise).contains_box(&grown(-swell));
+    // Boxes that are not aligned are loose. Then every shell whose box meets the other one is tested.
+    let meets = room.bounds.intersects(&around);
+    let aligned = own.aligned == [true; 3] && other.aligned == [true; 3];
+    meets && (within || !aligned) && is_shell_inside(scene, own, other, span.triangle)
 }
 
 /// Checks whether the shell that contains this triangle of a body is inside the other body.
@@ -104,6 +117,47 @@ fn is_shell_inside(scene: &PairFrame, own: &PlacedBody, other: &PlacedBody, tria
         let mut means = facet_means(scene, own.corners(t as usize));
         means.any(|mean| is_inside_other_piece(scene, other, &mean))
     })
+}
+
+/// Finds the shells of one body that lie inside the other one and bound material of their own body, and returns a
+/// triangle of each. The surfaces of the bodies do not cross.
+///
+/// An open shell bounds no material, nor does a shell that lies inside another piece. The latter is certain if it crosses
+/// no other shell. The other shells inside are excluded by their boxes, and the shells outside by the other body's
+/// surface, which they do not cross.
+pub(crate) fn bounding_shells_inside(scene: &PairFrame, moving: bool) -> impl Iterator<Item = u32> {
+    let own = scene.side(moving);
+    let inside: HashSet<u32> = shells_inside(scene, moving)
+        .filter(|triangle| !own.solid.is_open(*triangle as usize))
+        .collect();
+    let spans = own.solid.shell_bounds().iter();
+    let spans: Vec<&ShellBounds> = spans.filter(|span| inside.contains(&span.triangle)).collect();
+    let meets = spans_that_meet(&spans);
+    let is_within_piece = |span: &ShellBounds| {
+        let mut means = facet_means(scene, own.corners(span.triangle as usize));
+        !meets.contains(&span.triangle)
+            && means.all(|mean| is_inside_other_piece(scene, own, &mean))
+    };
+    let bounding: Vec<u32> =
+        spans.iter().filter(|span| !is_within_piece(span)).map(|span| span.triangle).collect();
+    bounding.into_iter()
+}
+
+/// Returns the triangles of the shells whose boxes meet the box of another shell, by a sweep along one axis.
+fn spans_that_meet(spans: &[&ShellBounds]) -> HashSet<u32> {
+    let mut sorted = spans.to_vec();
+    sorted.sort_by(|a, b| a.bounds.low.x.total_cmp(&b.bounds.low.x));
+    let (mut meets, mut active) = (HashSet::new(), Vec::<&ShellBounds>::new());
+    for span in sorted {
+        active.retain(|other| other.bounds.high.x >= span.bounds.low.x);
+        for other in &active {
+            if other.bounds.intersects(&span.bounds) {
+                meets.extend([span.triangle, other.triangle]);
+            }
+        }
+        active.push(span);
+    }
+    meets
 }
 
 /// Iterates over points of a facet.
@@ -152,7 +206,11 @@ impl ExactPoint for FacetMean {
 
 /// Computes the winding number of a point: the number of closed shells of a solid around the point, where the wall of a
 /// cavity counts -1. `None` if the point lies on a closed shell.
-fn winding_number(scene: &PairFrame, side: &PlacedBody, point: &impl ExactPoint) -> Option<i32> {
+pub(crate) fn winding_number(
+    scene: &PairFrame,
+    side: &PlacedBody,
+    point: &impl ExactPoint,
+) -> Option<i32> {
     let mut winding = 0;
     let is_off = visit_facets(scene, side, point, 0, &mut |_, count| {
         winding += count?;

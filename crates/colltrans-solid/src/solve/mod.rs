@@ -17,7 +17,7 @@ pub mod contact;
 pub(crate) mod edge_on;
 mod fan;
 pub mod hulls;
-mod inside;
+pub(crate) mod inside;
 pub(crate) mod leaf;
 mod line;
 pub mod nearest;

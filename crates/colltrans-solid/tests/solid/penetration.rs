@@ -3,13 +3,17 @@
 //! A polycube is a union of cells of side 1. Its surface is the list of squares between a cell of it and a cell outside
 //! of it. All coordinates are multiples of 1/4, so squared distances of squares and points have no rounding error.
 
-use colltrans_convex::{Pair, Pose};
-use colltrans_solid::{Overlap, Solid, SolidPenetration};
+use colltrans_convex::{ConvexPolyhedron, Pair, Pose};
+use colltrans_solid::{
+    AsSolid, CommonPart, InnerPair, Overlap, Relation, Solid, SolidDepth, SolidPenetration,
+    VolumeOptions,
+};
 use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::block;
 use glam::DVec3;
 
-use crate::common::{at, cuboid};
+use crate::common::{at, cuboid, solid};
 
 const SIDE: i64 = 4;
 
@@ -154,4 +158,581 @@ fn signed_distances_name_the_invalid_point() {
     let points = [DVec3::ZERO, DVec3::new(0.0, f64::NAN, 0.0)];
     let error = cube.signed_distances(Pose::IDENTITY, &points).expect_err("not a number");
     assert!(error.to_string().starts_with("point 1: "), "{error}");
+}
+
+impl Polycube {
+    /// Returns the solid, or in half of the cases the union of its cells, which has facets inside.
+    fn drawn_solid(&self, random: &mut Random) -> Solid {
+        if random.one_in(2) {
+            return self.solid.clone();
+        }
+        let cubes: Vec<Solid> = self.lows().map(|low| cuboid(low, low + 1.0)).collect();
+        Solid::from_pieces(&cubes).expect("closed pieces")
+    }
+
+    /// Returns the lowest corners of the cells.
+    fn lows(&self) -> impl Iterator<Item = DVec3> {
+        self.cells.iter().map(|cell| DVec3::from_array(cell.map(|c| c as f64)))
+    }
+
+    /// Returns the exact volume that boxes around the cells of another polycube have in common with this one. The boxes
+    /// exceed the cells by `margin`, and are disjoint only without a margin.
+    fn common_volumes(&self, low: DVec3, margin: f64) -> f64 {
+        let common = |own: DVec3| (own + 1.0).min(low + 1.0 + margin) - own.max(low - margin);
+        self.lows().map(|own| common(own).max(DVec3::ZERO).element_product()).sum()
+    }
+
+    /// Checks whether this polycube contains another one with its surface.
+    fn contains_strictly(&self, other: &Self, by: DVec3) -> bool {
+        let full = 1.25_f64.powi(3);
+        other.lows().all(|low| self.common_volumes(low + by, 0.125) == full)
+    }
+}
+
+#[test]
+fn common_parts_of_polycubes_agree_with_cells() {
+    let mut seen = [0; 5];
+    for seed in 0..cases(400) {
+        let mut random = Random::new(seed);
+        let fixed = Polycube::random(&mut random);
+        let small = random.one_in(3);
+        let moving = if small {
+            let cells = vec![[0, 0, 0], [1, 0, 0]];
+            Polycube::new(cells).expect("a bar")
+        } else {
+            Polycube::random(&mut random)
+        };
+        let by = if small && random.one_in(2) {
+            random.grid(0, 3)
+        } else if small {
+            quarters(&mut random, -8, 16)
+        } else {
+            quarters(&mut random, -18, 18)
+        };
+        let solids = [moving.drawn_solid(&mut random), fixed.drawn_solid(&mut random)];
+        let pair = Pair::new(solids[0].at(at(by)), solids[1].at(Pose::IDENTITY)).expect("a pair");
+        let found = pair.common_part(VolumeOptions::default()).expect("a common part");
+        let exact: f64 = moving.lows().map(|low| fixed.common_volumes(low + by, 0.0)).sum();
+        assert!(found.volume[0] <= exact && exact <= found.volume[1], "{seed}: {exact} {found:?}");
+        assert!(found.is_accurate, "{seed}: {exact} {found:?}");
+        let touch = moving.lows().any(|p| {
+            let p = p + by;
+            fixed.lows().any(|q| squared_distance([p, p + 1.0], [q, q + 1.0]) == 0.0)
+        });
+        let whole = [moving.cells.len() as f64 == exact, fixed.cells.len() as f64 == exact];
+        let strict = [fixed.contains_strictly(&moving, by), moving.contains_strictly(&fixed, -by)];
+        let are_plain = solids[0].report().shells.len() < 3 && solids[1].report().shells.len() < 3;
+        let is_right = match found.relation {
+            Relation::Disjoint => !touch,
+            Relation::Touching(_) => touch && exact == 0.0,
+            Relation::Crossing(_) | Relation::PartlyContained(_) => {
+                exact > 0.0 && !(are_plain && (strict[0] || strict[1]))
+            }
+            Relation::MovingContained => whole[0],
+            Relation::FixedContained => whole[1],
+            _ => false,
+        };
+        assert!(is_right, "{seed}: {exact} {touch} {whole:?} {strict:?} {found:?}");
+        assert_eq!(found.point.is_some(), exact > 0.0, "{seed}: {found:?}");
+        if let (Some(point), Some(bounds)) = (found.point, found.bounds) {
+            assert!(moving.has_inside(point - by) && fixed.has_inside(point), "{seed}: {point}");
+            for low in moving.lows().map(|low| low + by) {
+                for other in fixed.lows() {
+                    let (low, high) = (low.max(other), (low + 1.0).min(other + 1.0));
+                    if low.cmplt(high).all() {
+                        let inner = bounds.low.cmple(low).all() && high.cmple(bounds.high).all();
+                        assert!(inner, "{seed}: {bounds:?}");
+                    }
+                }
+            }
+        }
+        seen[match found.relation {
+            Relation::Disjoint => 0,
+            Relation::Touching(_) => 1,
+            Relation::Crossing(_) => 2,
+            Relation::MovingContained => 3,
+            _ => 4,
+        }] += 1;
+    }
+    assert!(seen[..3].iter().all(|count| *count > 0), "{seen:?}");
+}
+
+#[test]
+fn nested_bodies_are_told_from_crossing_ones() {
+    let mut seen = [0; 5];
+    for seed in 0..cases(600) {
+        let mut random = Random::new(seed);
+        // A cube of cells with one cavity, of one or two cells.
+        let cavity = [[1, 1, 1], [if random.one_in(2) { 1 } else { 2 }, 1, 1]];
+        let cells = (0..SIDE.pow(3)).map(|k| [k % SIDE, k / SIDE % SIDE, k / SIDE / SIDE]);
+        let outer = Polycube::new(cells.filter(|cell| !cavity.contains(cell)).collect());
+        let outer = outer.expect("a cube with a cavity");
+        let half = DVec3::splat(0.125) * random.grid(1, 9);
+        let middle =
+            if random.one_in(2) { DVec3::new(1.5, 1.5, 1.5) } else { quarters(&mut random, 0, 16) };
+        let [low, high] = [middle - half, middle + half];
+        let inner = cuboid(low, high);
+        let exact: f64 = outer
+            .lows()
+            .map(|cell| (high.min(cell + 1.0) - low.max(cell)).max(DVec3::ZERO).element_product())
+            .sum();
+        let mut ends = (0..6).map(|side| {
+            let mut ends = [low, high];
+            ends[1 - side / 3][side % 3] = ends[side / 3][side % 3];
+            ends
+        });
+        let touch = ends.any(|end| outer.squares.iter().any(|s| squared_distance(end, *s) == 0.0));
+        let is_whole = exact == (high - low).element_product();
+        let solids = [&inner, &outer.solid];
+        for moving in 0..2 {
+            let [first, second] = [solids[moving], solids[1 - moving]];
+            let pair = Pair::new(first.at(Pose::IDENTITY), second.at(Pose::IDENTITY));
+            let pair = pair.expect("a pair");
+            let found = pair.common_part(VolumeOptions::default()).expect("a common part");
+            let contained =
+                [Relation::MovingContained, Relation::FixedContained][moving] == found.relation;
+            let is_right = match found.relation {
+                Relation::Disjoint => exact == 0.0 && !touch,
+                Relation::Touching(_) => exact == 0.0 && touch,
+                Relation::Crossing(_) => exact > 0.0 && touch,
+                Relation::PartlyContained(_) => exact > 0.0 && !is_whole && !touch,
+                _ => contained && is_whole,
+            };
+            assert!(is_right, "{seed}: {exact} {touch} {is_whole} {found:?}");
+            assert!(
+                found.volume[0] <= exact && exact <= found.volume[1],
+                "{seed}: {exact} {found:?}"
+            );
+            assert!(found.is_accurate, "{seed}: {exact} {found:?}");
+            seen[match found.relation {
+                Relation::Disjoint => 0,
+                Relation::Touching(_) => 1,
+                Relation::Crossing(_) => 2,
+                Relation::PartlyContained(_) => 3,
+                _ => 4,
+            }] += 1;
+        }
+    }
+    assert!(seen.iter().all(|count| *count > 0), "{seen:?}");
+}
+
+/// The rotation and the translation are rounded: coordinates below 2 have errors below 16 roundoffs, a relative error
+/// of the volume below `1e-8`.
+#[test]
+fn volume_of_thin_plates_is_that_of_their_overlap() {
+    let thickness = 2.0_f64.powi(-20);
+    for seed in 0..cases(20) {
+        let mut random = Random::new(seed);
+        let rotation = random.rotation();
+        let plate = cuboid([0.0; 3], [1.0, 1.0, thickness]);
+        let shift = DVec3::new(random.range(-0.5, 0.5), random.range(-0.5, 0.5), 0.5 * thickness);
+        let poses =
+            [rotation * shift, DVec3::ZERO].map(|at| Pose::new(rotation, at).expect("a pose"));
+        let pair = Pair::new(plate.at(poses[0]), plate.at(poses[1])).expect("a pair");
+        let found = pair.common_part(VolumeOptions::default()).expect("a common part");
+        let exact = (1.0 - shift.x.abs()) * (1.0 - shift.y.abs()) * 0.5 * thickness;
+        assert!(found.volume[0] <= exact * (1.0 + 1e-8), "{seed}: {exact} {found:?}");
+        assert!(exact * (1.0 - 1e-8) <= found.volume[1], "{seed}: {exact} {found:?}");
+        assert!(found.is_accurate, "{seed}: {exact} {found:?}");
+    }
+}
+
+#[test]
+fn few_cells_are_stated() {
+    let cube = cuboid([0.0; 3], [1.0; 3]);
+    let turn = Pose::new(Random::new(1).rotation(), DVec3::splat(0.5)).expect("a pose");
+    let pair = Pair::new(cube.at(turn), cube.at(Pose::IDENTITY)).expect("a pair");
+    let mut last = [0.0, f64::INFINITY];
+    for max_cells in [1, 10, 100, 1000] {
+        let found = pair
+            .common_part(VolumeOptions::default().with_accuracy(0.0).with_max_cells(max_cells))
+            .expect("an answer");
+        assert_eq!(found.cells, max_cells);
+        assert!(!found.is_accurate);
+        assert!(last[0] <= found.volume[1] && found.volume[0] <= last[1], "{found:?}");
+        last = found.volume;
+    }
+    assert!(last[1] < 1.05 * last[0], "{last:?}");
+}
+
+#[test]
+fn volumes_on_both_sides_of_a_plane_add_up() {
+    for seed in 0..cases(24) {
+        let mut random = Random::new(seed);
+        let body = Polycube::random(&mut random);
+        let turn = Pose::new(random.rotation(), random.vector()).expect("a pose");
+        let is_small = body.cells.len() < 20;
+        let solid = if is_small { body.drawn_solid(&mut random) } else { body.solid.clone() };
+        let high = random.range(-3.0, 3.0);
+        let parts = [(-20.0, high), (high, 20.0)].map(|(low, high)| {
+            let half = cuboid([-20.0, -20.0, low], [20.0, 20.0, high]);
+            let pair = Pair::new(solid.at(turn), half.at(Pose::IDENTITY)).expect("a pair");
+            pair.common_part(VolumeOptions::default()).expect("a common part")
+        });
+        let [lower, upper] = [0, 1].map(|k| parts[0].volume[k] + parts[1].volume[k]);
+        let exact = body.cells.len() as f64;
+        assert!(lower <= exact && exact <= upper, "{seed}: {exact} {parts:?}");
+        assert!(parts.iter().all(|part| part.is_accurate), "{seed}: {parts:?}");
+    }
+}
+
+/// Returns the exact square of the depth of polycubes. The displacements after which two cells share interior points
+/// form an open cube. The planes of all cubes divide space into boxes, rectangles, segments and points. The depth is
+/// the distance of the nearest of these that no cube contains.
+fn exact_squared_depth(moving: &Polycube, fixed: &Polycube, by: DVec3) -> f64 {
+    let mut centers: Vec<DVec3> =
+        moving.lows().flat_map(|p| fixed.lows().map(move |q| q - p - by)).collect();
+    centers.sort_by(|p, q| p.to_array().partial_cmp(&q.to_array()).expect("finite"));
+    centers.dedup();
+    let ranges = [0, 1, 2].map(|axis| {
+        let mut planes: Vec<f64> =
+            centers.iter().flat_map(|c| [c[axis] - 1.0, c[axis] + 1.0]).collect();
+        planes.sort_by(f64::total_cmp);
+        planes.dedup();
+        let mut ranges = vec![[f64::NEG_INFINITY, planes[0]]];
+        for pair in planes.windows(2) {
+            ranges.extend([[pair[0]; 2], [pair[0], pair[1]]]);
+        }
+        let last = planes[planes.len() - 1];
+        ranges.extend([[last; 2], [last, f64::INFINITY]]);
+        ranges
+    });
+    let mut best = f64::INFINITY;
+    for x in &ranges[0] {
+        for y in &ranges[1] {
+            for z in &ranges[2] {
+                let low = DVec3::new(x[0], y[0], z[0]);
+                let high = DVec3::new(x[1], y[1], z[1]);
+                let square = squared_distance([DVec3::ZERO; 2], [low, high]);
+                let is_covered = |c: &DVec3| {
+                    (*c - 1.0).cmple(low).all()
+                        && high.cmple(*c + 1.0).all()
+                        && (0..3).all(|k| low[k] < high[k] || (low[k] - c[k]).abs() < 1.0)
+                };
+                if square < best && !centers.iter().any(is_covered) {
+                    best = square;
+                }
+            }
+        }
+    }
+    best
+}
+
+/// Checks that the convex bodies of a depth lie in the placed polycubes.
+fn check_inner_pair(found: &SolidDepth, bodies: [(&Polycube, DVec3); 2]) {
+    assert!(found.inner.is_none_or(|inner| inner.depth() <= found.lower), "{found:?}");
+    for (k, (cube, by)) in bodies.into_iter().enumerate() {
+        match found.inner {
+            Some(InnerPair::Balls { center, radii }) => {
+                let (at, square) = (center - by, radii[k].powi(2));
+                let near = |s: &[DVec3; 2]| squared_distance([at; 2], *s) < square;
+                assert!(cube.has_inside(at) && !cube.squares.iter().any(near), "{found:?}");
+            }
+            Some(InnerPair::Boxes { moving, fixed }) => {
+                let inner = [moving, fixed][k];
+                let full = inner.side_lengths().element_product();
+                let (low, high) = (inner.low - by, inner.high - by);
+                let within = |cell: DVec3| high.min(cell + 1.0) - low.max(cell);
+                let parts = cube.lows().map(|c| within(c).max(DVec3::ZERO).element_product());
+                assert!(parts.sum::<f64>() > full * (1.0 - 1e-12), "{found:?}");
+            }
+            _ => assert_eq!((found.lower, found.inner), (0.0, None)),
+        }
+    }
+}
+
+/// Checks whether the interiors have a common point after the translation of a depth.
+fn overlap_after(pair: &Pair<Solid>, found: &SolidDepth) -> bool {
+    let [moving, fixed] = [pair.bodies.moving_placed(), pair.bodies.fixed_placed()];
+    let away = moving.pose.translation() + found.translation;
+    let pose = moving.pose.with_translation(away).expect("a pose");
+    let apart = Pair::new(moving.body.at(pose), fixed).expect("a pair");
+    let common = apart.common_part(VolumeOptions::default()).expect("a common part");
+    !matches!(common.relation, Relation::Disjoint | Relation::Touching(_))
+}
+
+#[test]
+fn depths_of_polycubes_contain_the_exact_ones() {
+    let (mut overlaps, mut exact_upper, mut exact_lower) = (0, 0, 0);
+    for seed in 0..cases(200) {
+        let mut random = Random::new(seed);
+        let [moving, fixed] = [(); 2].map(|()| {
+            if random.one_in(4) {
+                let cells = (0..27).map(|k| [k % 3, k / 3 % 3, k / 9]);
+                return Polycube::new(cells.filter(|cell| *cell != [1; 3]).collect());
+            }
+            let cells = (0..2 + random.index(6)).fold(vec![[0, 0, 0]], |mut cells, _| {
+                let mut next = cells[random.index(cells.len())];
+                next[random.index(3)] += if random.one_in(2) { 1 } else { -1 };
+                if !cells.contains(&next) {
+                    cells.push(next);
+                }
+                cells
+            });
+            Polycube::new(cells)
+        });
+        let (Some(moving), Some(fixed)) = (moving, fixed) else { continue };
+        let by = quarters(&mut random, -8, 8);
+        let solids = [moving.drawn_solid(&mut random), fixed.drawn_solid(&mut random)];
+        let pair = Pair::new(solids[0].at(at(by)), solids[1].at(Pose::IDENTITY)).expect("a pair");
+        let found = pair.depth().expect("a depth");
+        let exact = exact_squared_depth(&moving, &fixed, by).sqrt();
+        assert!(found.lower <= exact, "{seed}: {exact} {found:?}");
+        assert!(exact <= found.upper, "{seed}: {exact} {found:?}");
+        assert_eq!(found.upper > 0.0, exact > 0.0, "{seed}: {exact} {found:?}");
+        assert!(!overlap_after(&pair, &found), "{seed}: {found:?}");
+        check_inner_pair(&found, [(&moving, by), (&fixed, DVec3::ZERO)]);
+        overlaps += usize::from(exact > 0.0);
+        exact_upper += usize::from(exact > 0.0 && found.upper < exact + 1e-9);
+        exact_lower += usize::from(exact > 0.0 && found.lower > 0.98 * exact);
+    }
+    // The bounds are proven. How close they are is measured.
+    assert!(overlaps > cases(50), "{overlaps}");
+    assert!(10 * exact_upper > 9 * overlaps, "{exact_upper} of {overlaps}");
+    assert!(2 * exact_lower > overlaps, "{exact_lower} of {overlaps}");
+}
+
+#[test]
+fn depths_of_convex_bodies_lie_within_the_bounds_of_unions() {
+    let mut overlaps = 0;
+    for seed in 0..cases(80) {
+        let mut random = Random::new(seed);
+        let hulls = [(); 2].map(|()| {
+            if random.one_in(3) {
+                let thin = DVec3::new(1.0, 1.0, 0.001);
+                return ConvexPolyhedron::cuboid(-thin, thin).expect("a plate");
+            }
+            let points: Vec<DVec3> = (0..10).map(|_| random.vector()).collect();
+            ConvexPolyhedron::from_points(&points).expect("a hull")
+        });
+        let place = Pose::new(random.rotation(), random.vector()).expect("a pose");
+        let convex = Pair::new(hulls[0].at(place), hulls[1].at(Pose::IDENTITY)).expect("a pair");
+        let exact = convex.depth().expect("a depth");
+        let [a, b] = hulls.each_ref().map(|hull| Solid::from_convex(hull).expect("a solid"));
+        // The second piece does not change the union, but such a solid does not count as convex.
+        let [c, d] = [&a, &b].map(|solid| Solid::from_pieces([solid, solid]).expect("a union"));
+        for [moving, fixed] in [[&a, &b], [&c, &d], [&a, &d]] {
+            let pair = Pair::new(moving.at(place), fixed.at(Pose::IDENTITY)).expect("a pair");
+            let found = pair.depth().expect("a depth");
+            assert!(found.lower <= exact.upper, "{seed}: {exact:?} {found:?}");
+            assert!(exact.lower <= found.upper, "{seed}: {exact:?} {found:?}");
+            assert!(!overlap_after(&pair, &found), "{seed}: {found:?}");
+            if moving.report().shells.len() + fixed.report().shells.len() == 2 {
+                assert!(found.upper - found.lower < 1e-9, "{seed}: {found:?}");
+            }
+        }
+        overlaps += usize::from(exact.lower > 0.0);
+    }
+    assert!(overlaps > cases(20), "{overlaps}");
+}
+
+/// Returns the pair of two bodies in the world.
+fn pair<'a>(moving: &'a Solid, fixed: &'a Solid) -> Pair<'a, Solid> {
+    Pair::new(moving.at(Pose::IDENTITY), fixed.at(Pose::IDENTITY)).expect("a pair")
+}
+
+fn common(pair: &Pair<Solid>) -> CommonPart {
+    pair.common_part(VolumeOptions::default()).expect("a common part")
+}
+
+/// Builds a box with a cavity.
+fn hollow([low, high]: [[f64; 3]; 2], cavity: [[f64; 3]; 2]) -> Solid {
+    solid(&block(low, high).joined(&block(cavity[0], cavity[1]).reversed()))
+}
+
+fn square_sheet(half: f64) -> Solid {
+    let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
+    let corners = corners.map(|[x, y]| DVec3::new(5.0 + x, 5.0 + y, 5.0));
+    Solid::from_open_mesh(&corners, &[[0, 1, 2, 3]]).expect("a sheet")
+}
+
+#[test]
+fn a_body_in_a_filled_cavity_overlaps_the_filling() {
+    let cube = cuboid([0.0; 3], [1.0; 3]);
+    let wall = hollow([[-1.0; 3], [2.0; 3]], [[0.0; 3], [1.0; 3]]);
+    let filled = Solid::from_pieces([&wall, &cuboid([-0.5; 3], [1.5; 3])]).expect("two pieces");
+    for both in [pair(&cube, &filled), pair(&filled, &cube)] {
+        let found = common(&both);
+        assert!(found.volume[0] <= 1.0 && 1.0 <= found.volume[1] && found.is_accurate, "{found:?}");
+        assert!(found.point.is_some());
+        let depth = both.depth().expect("a depth");
+        assert!(depth.lower <= 2.0 && 2.0 <= depth.upper, "{depth:?}");
+        assert!(depth.lower > 0.9 && depth.upper < 2.0 + 1e-9, "{depth:?}");
+    }
+}
+
+#[test]
+fn shells_that_bound_no_material_do_not_hide_containment() {
+    let outer = cuboid([0.0; 3], [10.0; 3]);
+    let inner = cuboid([3.0; 3], [7.0; 3]);
+    let cavity = [[4.0; 3], [6.0; 3]];
+    let with_piece = Solid::from_pieces([&outer, &cuboid(cavity[0], cavity[1])]).expect("pieces");
+    let with_sheet = Solid::from_pieces([&outer, &square_sheet(1.0)]).expect("pieces");
+    let wall = hollow([[0.0; 3], [10.0; 3]], cavity);
+    let filled = Solid::from_pieces([&wall, &cuboid([2.0; 3], [8.0; 3])]).expect("pieces");
+    for outer in [&with_piece, &with_sheet, &filled] {
+        assert_eq!(common(&pair(&inner, outer)).relation, Relation::MovingContained);
+        assert_eq!(common(&pair(outer, &inner)).relation, Relation::FixedContained);
+    }
+    let found = common(&pair(&inner, &wall));
+    assert!(matches!(found.relation, Relation::PartlyContained(_)), "{found:?}");
+    assert!(found.volume[0] <= 56.0 && 56.0 <= found.volume[1], "{found:?}");
+}
+
+#[test]
+fn bodies_without_interior_have_no_depth() {
+    let cube = cuboid([0.0; 3], [10.0; 3]);
+    let ends = [DVec3::new(5.0, 5.0, -5.0), DVec3::new(5.0, 5.0, 5.0)];
+    let segment = ConvexPolyhedron::from_points(&ends).expect("a segment");
+    let segment = segment.as_surface().expect("a facet without area").clone();
+    for thin in [square_sheet(9.0), segment] {
+        for both in [pair(&thin, &cube), pair(&cube, &thin)] {
+            let found = common(&both);
+            assert!(matches!(found.relation, Relation::Crossing(_)), "{found:?}");
+            assert_eq!(found.volume[0], 0.0);
+            let depth = both.depth().expect("a depth");
+            assert_eq!((depth.bounds(), depth.direction), ([0.0; 2], DVec3::ZERO));
+        }
+    }
+}
+
+#[test]
+fn a_thin_rotated_plate_inside_has_its_own_volume() {
+    let cube = cuboid([-2.0; 3], [2.0; 3]);
+    for seed in 0..cases(20) {
+        let mut random = Random::new(seed);
+        let thickness = random.pick(&[1e-3, 1e-6]);
+        let plate = cuboid([0.0; 3], [1.0, 1.0, thickness]);
+        let pose = Pose::new(random.rotation(), DVec3::splat(0.1)).expect("a pose");
+        let both = Pair::new(plate.at(pose), cube.at(Pose::IDENTITY)).expect("a pair");
+        let found = common(&both);
+        assert_eq!(found.relation, Relation::MovingContained);
+        assert!(found.is_accurate && found.point.is_some(), "{found:?}");
+        assert!(found.volume[0] <= thickness && thickness <= found.volume[1], "{found:?}");
+        let bounds = found.bounds.expect("a box");
+        for corner in plate.vertices().iter().map(|v| pose.transform_point(*v)) {
+            assert!(bounds.low.cmple(corner).all() && corner.cmple(bounds.high).all());
+        }
+    }
+}
+
+#[test]
+fn bounds_hold_with_few_cells() {
+    for seed in 0..cases(100) {
+        let mut random = Random::new(seed);
+        let (moving, fixed) = (Polycube::random(&mut random), Polycube::random(&mut random));
+        let by = quarters(&mut random, -8, 8);
+        let exact: f64 = moving.lows().map(|low| fixed.common_volumes(low + by, 0.0)).sum();
+        let both = Pair::new(moving.solid.at(at(by)), fixed.solid.at(Pose::IDENTITY));
+        let both = both.expect("a pair");
+        for max_cells in [1, 2, 10, 100] {
+            let options = VolumeOptions::default().with_max_cells(max_cells);
+            let found = both.common_part(options).expect("a common part");
+            assert!(found.cells <= max_cells);
+            assert!(found.volume[0] <= exact && exact <= found.volume[1], "{seed}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn answers_far_from_the_origin_are_those_near_it() {
+    let far = DVec3::new(1e6, -3e6, 2e6);
+    for seed in 0..cases(60) {
+        let mut random = Random::new(seed);
+        let (moving, fixed) = (Polycube::random(&mut random), Polycube::random(&mut random));
+        let by = quarters(&mut random, -8, 8);
+        let [near, away] = [DVec3::ZERO, far].map(|far| {
+            let both = Pair::new(moving.solid.at(at(by + far)), fixed.solid.at(at(far)));
+            let both = both.expect("a pair");
+            let (common, depth) = (common(&both), both.depth().expect("a depth"));
+            assert!(!overlap_after(&both, &depth), "{seed}: {depth:?}");
+            (common, depth)
+        });
+        assert_eq!(near.0.relation, away.0.relation, "{seed}");
+        assert_eq!(near.0.volume, away.0.volume, "{seed}");
+        assert_eq!(near.0.point.is_some(), away.0.point.is_some(), "{seed}");
+        let exact = exact_squared_depth(&moving, &fixed, by).sqrt();
+        assert!(away.1.lower <= exact && exact <= away.1.upper, "{seed}: {exact} {:?}", away.1);
+    }
+}
+
+#[test]
+fn depths_of_rounded_solids_add_the_radii() {
+    let [a, b] = [cuboid([0.0; 3], [2.0; 3]), cuboid([0.0; 3], [4.0; 3])];
+    let round = |solid: &Solid, radius: f64| solid.clone().rounded(radius).expect("a radius");
+    for (shift, exact) in [(4.25, 0.5), (4.75, 0.0), (3.5, 1.25), (2.0, 2.75)] {
+        let (moving, fixed) = (round(&a, 0.25), round(&b, 0.5));
+        let there = at(DVec3::new(shift, 1.0, 1.0));
+        let both = Pair::new(moving.at(there), fixed.at(Pose::IDENTITY)).expect("a pair");
+        let found = both.depth().expect("a depth");
+        assert!(found.lower <= exact && exact <= found.upper, "{shift}: {found:?}");
+        assert!(found.upper <= exact + 1e-9 && found.lower >= 0.6 * exact - 1e-9, "{found:?}");
+        let common = both.common_part(VolumeOptions::default());
+        assert!(common.is_err_and(|e| e.to_string().contains("radius")));
+    }
+}
+
+#[test]
+fn depth_of_a_rounded_body_at_a_plain_one_needs_an_interior() {
+    let round = cuboid([0.0; 3], [2.0; 3]).rounded(0.5).expect("a radius");
+    let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+    let square = ConvexPolyhedron::from_points(&corners.map(|[x, y]| DVec3::new(x, y, 0.0)));
+    let square = square.expect("a square").as_solid().expect("two sides").clone();
+    let below = cuboid([0.0, 0.0, -1.0], [2.0, 2.0, 0.0]);
+    let above = at(DVec3::Z * 0.2);
+    for (plain, depth) in [(&square, 0.0), (&below, 0.3)] {
+        let both = Pair::new(round.at(above), plain.at(Pose::IDENTITY)).expect("a pair");
+        let turned = Pair::new(plain.at(Pose::IDENTITY), round.at(above)).expect("a pair");
+        for both in [both, turned] {
+            let found = both.depth().expect("a depth");
+            assert!(found.lower <= depth && depth <= found.upper, "{found:?}");
+            assert!(found.lower >= depth - 1e-12, "{found:?}");
+        }
+    }
+    // Only the open shell is near.
+    let mesh = block([0.0, 0.0, -9.0], [2.0, 2.0, -8.0]);
+    let sheet = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
+    let vertices: Vec<DVec3> = mesh.vertices.iter().copied().chain(sheet).collect();
+    let first = mesh.vertices.len() as u32;
+    let mut facets = mesh.faces.clone();
+    facets.push((first..first + 4).collect());
+    let mixed = Solid::from_open_mesh(&vertices, &facets).expect("an open body");
+    let both = Pair::new(round.at(above), mixed.at(Pose::IDENTITY)).expect("a pair");
+    assert_eq!(both.depth().expect("a depth").lower, 0.0);
+}
+
+/// The top of the plate dips below its bottom near the middle, by less than the tolerance of convexity.
+#[test]
+fn volume_of_a_contained_plate_that_crosses_itself_is_that_inside() {
+    let ring = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
+    let at_height = |z: f64| ring.map(|[x, y]| DVec3::new(x, y, z));
+    let vertices: Vec<DVec3> = [at_height(0.0), at_height(1e-11)]
+        .concat()
+        .into_iter()
+        .chain([DVec3::Z * -1.5e-11])
+        .collect();
+    let mut facets: Vec<Vec<u32>> = vec![vec![0, 2, 1], vec![0, 3, 2]];
+    for k in 0..4 {
+        let next = (k + 1) % 4;
+        facets.push(vec![k, next, next + 4, k + 4]);
+        facets.push(vec![k + 4, next + 4, 8]);
+    }
+    let plate = Solid::from_mesh(&vertices, &facets).expect("a plate");
+    let found = common(&pair(&plate, &cuboid([-1.0; 3], [1.0; 3])));
+    let exact = 3.466_666_666_666_667e-12;
+    assert!(found.volume[0] <= exact && exact <= found.volume[1], "{found:?}");
+}
+
+#[test]
+fn boxes_inside_thin_bodies_far_away_are_not_reversed() {
+    let far = Pose::from_translation(DVec3::new(1e12, 1e12, 0.0)).expect("a pose");
+    let rod = cuboid([-5e-5, -5e-5, 0.0], [5e-5, 5e-5, 40.0]);
+    let slab = block([-100.0, -100.0, -15.0], [100.0, 100.0, 15.0]);
+    let slab = solid(&slab.joined(&block([300.0; 3], [301.0; 3])));
+    let both = Pair::new(rod.at(far), slab.at(far)).expect("a pair");
+    let found = both.depth().expect("a depth");
+    if let Some(InnerPair::Boxes { moving, fixed }) = found.inner {
+        assert!(moving.low.cmplt(moving.high).all() && fixed.low.cmplt(fixed.high).all());
+    }
+    assert!(0.0 <= found.lower && found.lower <= 15.0 && found.upper >= 15.0 - 1e-9, "{found:?}");
 }

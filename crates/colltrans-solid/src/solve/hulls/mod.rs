@@ -105,6 +105,12 @@ impl ConvexBody {
         Some(Self { hull, triangle_at, has_all_vertices, dent, inner_radius })
     }
 
+    /// Returns the dent as a share of the radius of a ball inside the hull; `None` from one half on. The hull scaled by 1
+    /// less this share about the ball's centre is inside the solid.
+    pub(crate) fn dent_share(&self) -> Option<f64> {
+        Some(self.dent / self.inner_radius).filter(|share| (0.0..0.5).contains(share))
+    }
+
     /// Returns the number in the solid of a vertex of the hull.
     pub(crate) fn solid_vertex(&self, vertex: u32) -> u32 {
         self.hull.input_indices()[vertex as usize].0

@@ -4,7 +4,11 @@ use std::collections::HashMap;
 
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::solids::settings::{FAMILIES, MotionOutcome, Setting};
-use colltrans_testkit::oracle::solids::sheets;
+use colltrans_testkit::oracle::solids::{depth, sheets, unions};
+use colltrans_testkit::tally::Tally;
+
+/// Examines a setting of a family with a seed.
+type Examine = fn(&str, u64, &mut Tally) -> Result<(), String>;
 
 /// Settings of all families together.
 const SETTINGS: u64 = 10_000;
@@ -54,4 +58,19 @@ fn open_surfaces_agree_with_exact_arithmetic() {
         }
     }
     each_was_seen(&seen);
+}
+
+#[test]
+fn depths_and_unions_agree_with_cubes() {
+    let depths = depth::FAMILIES.map(|family| (family, depth::examine as Examine));
+    let unions = unions::FAMILIES.map(|family| (family, unions::examine as Examine));
+    for (family, examine) in depths.into_iter().chain(unions) {
+        let mut tally = Tally::default();
+        for seed in 0..cases(80) {
+            if let Err(error) = examine(family, seed, &mut tally) {
+                panic!("{family}:{seed}: {error}");
+            }
+        }
+        assert!(tally.get("settings") > cases(40), "{family}");
+    }
 }

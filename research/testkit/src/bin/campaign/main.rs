@@ -3,7 +3,7 @@
 //! Each option selects a campaign: single casts with every solver, sequences of settings with trackers, nearly
 //! flat bodies, distances, scenes, casts with a minimum gap, rounded bodies, bulk casts without rotation,
 //! motions of convex bodies or solids, arms on paths, bodies that rotate with little play, forged proofs,
-//! removal paths, and free directions of solids. Certificates are verified in exact arithmetic, and a sample is
+//! removal paths, free directions of solids, and depths of solids. Certificates are verified in exact arithmetic, and a sample is
 //! solved by the rational linear programme. Bodies are compared with their input points in exact arithmetic, so
 //! that answers are judged for the input.
 //!
@@ -30,7 +30,7 @@ use std::time::Instant;
 use colltrans_testkit::oracle::among;
 use colltrans_testkit::oracle::proofs::{self as forged, KINDS};
 use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT};
-use colltrans_testkit::oracle::solids::free;
+use colltrans_testkit::oracle::solids::{depth, free, unions};
 use colltrans_testkit::oracle::still::CASTS;
 use colltrans_testkit::tally::{Tally, header};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -109,7 +109,7 @@ const fn campaign(
 }
 
 /// All campaigns. The first one is the default.
-const CAMPAIGNS: [Campaign; 20] = [
+const CAMPAIGNS: [Campaign; 22] = [
     campaign("--settings", settings, casts::COLUMNS, casts::examine),
     Campaign {
         counts: "QUERIES",
@@ -126,6 +126,8 @@ const CAMPAIGNS: [Campaign; 20] = [
         solids::rounded_distances,
     ),
     campaign("--rounded-solids", solids::mesh_families, solids::MIN_GAPS, solids::rounded_casts),
+    campaign("--depths", solids::depth_families, depth::COLUMNS, solids::depths),
+    campaign("--unions", solids::union_families, unions::COLUMNS, solids::overlapping_unions),
     campaign("--solid-motions", solids::motion_families, solids::MOTIONS, solids::motions),
     Campaign {
         counts: "DIRECTIONS",

@@ -4,7 +4,7 @@
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
 use colltrans_testkit::oracle::solids::{
-    MotionOutcome, as_solids, min_gap, nearest, sheets, turning,
+    MotionOutcome, as_solids, depth, min_gap, nearest, sheets, turning, unions,
 };
 use colltrans_testkit::random::Random;
 use colltrans_testkit::tally::Tally;
@@ -27,6 +27,16 @@ pub(crate) const MIN_GAPS: &[&str] = &["settings", "nearer", "free", "blocked", 
 /// Columns of motions.
 pub(crate) const MOTIONS: &[&str] =
     &["settings", "overlapping", "free", "grazing", "contact", "skipped"];
+
+/// Returns the families of depths.
+pub(crate) fn depth_families() -> Vec<String> {
+    crate::to_strings(&depth::FAMILIES)
+}
+
+/// Returns the families of unions.
+pub(crate) fn union_families() -> Vec<String> {
+    crate::to_strings(&unions::FAMILIES)
+}
 
 /// Returns the families of casts: bodies of cubes, open sheets, convex bodies.
 pub(crate) fn cast_families() -> Vec<String> {
@@ -130,6 +140,16 @@ pub(crate) fn motions(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String
         turning::TurningOutcome::Grazing => "grazing",
         turning::TurningOutcome::Contact => "contact",
     })
+}
+
+/// Examines common parts and depths.
+pub(crate) fn depths(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
+    depth::examine(asked.family, asked.seed, tally)
+}
+
+/// Examines casts, common parts and depths of unions of pieces that overlap.
+pub(crate) fn overlapping_unions(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
+    unions::examine(asked.family, asked.seed, tally)
 }
 
 /// Counts the outcome of a setting. Bodies that are not solids are counted as skipped.

@@ -4,11 +4,13 @@
 //!   squares ([`squares`], [`sheets`]).
 //! - The rule over all pairs of facets in exact arithmetic ([`facets`]), and proofs in rational arithmetic
 //!   ([`proof`]).
+//! - Common parts and depths ([`depth`]), also of unions of pieces that overlap ([`unions`]), by cubes.
 //! - Distances over all pairs of facets ([`nearest`]), casts with a minimum gap ([`min_gap`]), free directions
 //!   ([`free`]), first contacts of rotating solids ([`turning`]), and settings with many ties ([`settings`]).
 
 pub mod cells;
 mod convex;
+pub mod depth;
 pub mod facets;
 pub mod free;
 pub mod min_gap;
@@ -18,6 +20,7 @@ pub mod settings;
 pub mod sheets;
 pub mod squares;
 pub mod turning;
+pub mod unions;
 
 use colltrans::solid::SolidCast;
 use colltrans::{Bounded, Cast, Pose, Solid};

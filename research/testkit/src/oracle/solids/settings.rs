@@ -1,7 +1,7 @@
 //! Draws settings of bodies made of cubes, most of them with ties, and judges the answers.
 
 use colltrans::solid::{SolidCast, SolidFree};
-use colltrans::{Bounded, Clearance, ContactRange, Pose, Solid};
+use colltrans::{Bounded, Cast, Clearance, ContactRange, Pose, Solid};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::cells::{Cells, Motion, motion};
@@ -140,65 +140,75 @@ impl Setting {
         };
         let (a, b) = (solid(0)?, solid(1)?);
         let cast = exactly([&a, &b], self.poses, self.direction)?;
-        let expected = self.expected();
-        let tolerance = self.tolerance();
-        let near =
-            |found: f64, right: &Ratio| right.minus(&Ratio::from_f64(found)).is_within(tolerance);
-        let exit = cast.exit();
-        match (&expected.exit, exit) {
-            (None, None) => {}
-            (Some(right), Some(found))
-                if encloses(&found, &right.clone().max(Ratio::from_f64(0.0)))
-                    && (near(found.value, right)
-                        || found.value == 0.0 && right.to_f64() <= tolerance) => {}
-            (right, found) => {
-                return Err(format!("exit {found:?}, not {:?}", right.as_ref().map(Ratio::to_f64)));
-            }
-        }
         let back = self.expected_along(-self.direction).exit;
-        let meets =
-            |found: Bounded, right: &Ratio| encloses(&found, right) && near(found.value, right);
-        match (cast.contact_range().map_err(|e| e.to_string())?, &back, &expected.exit) {
-            (ContactRange::Separated(_), None, None) => {}
-            (ContactRange::Contact { first, last }, Some(back), Some(exit))
-                if meets(first.exit(), back) && meets(last.exit(), exit) => {}
-            (found, back, exit) => {
-                let [back, exit] = [back, exit].map(|end| end.as_ref().map(Ratio::to_f64));
-                return Err(format!("{found:?}, not -{back:?} to {exit:?}"));
-            }
-        }
-        let (found, certificate) = cast.certified_clearance().map_err(|e| e.to_string())?;
-        cast.verify(&certificate).map_err(|e| format!("{found:?}: {e}: {certificate:?}"))?;
-        let pairs = a.triangles().len() * b.triangles().len();
-        if in_fractions && pairs <= MOST_PAIRS {
-            approve(&cast, &certificate, tolerance)?;
-        }
-        if expected.overlaps && cast.overlaps() {
-            let said = matches!(found, Clearance::Overlapping(_));
-            return if said { Ok(MotionOutcome::Overlapping) } else { Err(format!("{found:?}")) };
-        }
-        if let Clearance::Free(SolidFree { separation: Some(separation), .. }) = &found {
-            cast.verify(separation).map_err(|e| format!("{found:?}: {e}"))?;
-        }
-        match (found, expected.overlaps, &expected.stop) {
-            (Clearance::Free(_), false, None) => Ok(MotionOutcome::Free),
-            (Clearance::Blocked { distance, contact }, false, Some(stop))
-                if near(distance, stop)
-                    && near(contact.translation.value, stop)
-                    && encloses(&contact.translation, stop) =>
-            {
-                Ok(if stop.is_zero() { MotionOutcome::BlockedNow } else { MotionOutcome::Blocked })
-            }
-            (found, overlaps, stop) => Err(format!(
-                "{found:?}, but overlapping: {overlaps}, stop: {:?}",
-                stop.as_ref().map(Ratio::to_f64)
-            )),
-        }
+        judge_motion(&cast, &self.expected(), back.as_ref(), self.tolerance(), in_fractions)
     }
 
     fn tolerance(&self) -> f64 {
         let size = size(self.surfaces.each_ref().map(|s| &s.0[..]), self.poses.each_ref());
         AGREEMENT * 16.0 * f64::EPSILON * size / self.direction.length()
+    }
+}
+
+/// Computes the answers of a cast, and judges them. `expected` is the exact motion, `back` the exit of the opposite one,
+/// and `tolerance` the maximum difference of distances. Proofs of small bodies are judged in rational arithmetic if
+/// `in_fractions`.
+pub(super) fn judge_motion(
+    cast: &Cast<'_, Solid>,
+    expected: &Motion,
+    back: Option<&Ratio>,
+    tolerance: f64,
+    in_fractions: bool,
+) -> Result<MotionOutcome, String> {
+    let near =
+        |found: f64, right: &Ratio| right.minus(&Ratio::from_f64(found)).is_within(tolerance);
+    let exit = cast.exit();
+    match (&expected.exit, exit) {
+        (None, None) => {}
+        (Some(right), Some(found))
+            if encloses(&found, &right.clone().max(Ratio::from_f64(0.0)))
+                && (near(found.value, right)
+                    || found.value == 0.0 && right.to_f64() <= tolerance) => {}
+        (right, found) => {
+            return Err(format!("exit {found:?}, not {:?}", right.as_ref().map(Ratio::to_f64)));
+        }
+    }
+    let meets = |found: Bounded, right: &Ratio| encloses(&found, right) && near(found.value, right);
+    match (cast.contact_range().map_err(|e| e.to_string())?, back, &expected.exit) {
+        (ContactRange::Separated(_), None, None) => {}
+        (ContactRange::Contact { first, last }, Some(back), Some(exit))
+            if meets(first.exit(), back) && meets(last.exit(), exit) => {}
+        (found, back, exit) => {
+            let [back, exit] = [back, exit.as_ref()].map(|end| end.map(Ratio::to_f64));
+            return Err(format!("{found:?}, not -{back:?} to {exit:?}"));
+        }
+    }
+    let (found, certificate) = cast.certified_clearance().map_err(|e| e.to_string())?;
+    cast.verify(&certificate).map_err(|e| format!("{found:?}: {e}: {certificate:?}"))?;
+    let pairs = cast.moving().triangles().len() * cast.fixed().triangles().len();
+    if in_fractions && pairs <= MOST_PAIRS {
+        approve(cast, &certificate, tolerance)?;
+    }
+    if expected.overlaps && cast.overlaps() {
+        let said = matches!(found, Clearance::Overlapping(_));
+        return if said { Ok(MotionOutcome::Overlapping) } else { Err(format!("{found:?}")) };
+    }
+    if let Clearance::Free(SolidFree { separation: Some(separation), .. }) = &found {
+        cast.verify(separation).map_err(|e| format!("{found:?}: {e}"))?;
+    }
+    match (found, expected.overlaps, &expected.stop) {
+        (Clearance::Free(_), false, None) => Ok(MotionOutcome::Free),
+        (Clearance::Blocked { distance, contact }, false, Some(stop))
+            if near(distance, stop)
+                && near(contact.translation.value, stop)
+                && encloses(&contact.translation, stop) =>
+        {
+            Ok(if stop.is_zero() { MotionOutcome::BlockedNow } else { MotionOutcome::Blocked })
+        }
+        (found, overlaps, stop) => Err(format!(
+            "{found:?}, but overlapping: {overlaps}, stop: {:?}",
+            stop.as_ref().map(Ratio::to_f64)
+        )),
     }
 }
 

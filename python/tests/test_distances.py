@@ -158,9 +158,10 @@ def test_answers_give_bounds_points_and_normals() -> None:
 def test_proofs_are_checked_in_fractions_and_by_the_command_line(cli: Path, tmp_path: Path) -> None:
     file = tmp_path / "proof.json"
     for answer in answers():
-        if isinstance(answer, (Pair, OverlapDepth)):
+        if isinstance(answer, Pair):
             continue
-        answer.verify()
+        if not isinstance(answer, OverlapDepth):
+            answer.verify()
         answer.save_proof(file)
         conform("proof", json.loads(file.read_text()))
         said = subprocess.run([cli, "verify", file, "--json"], capture_output=True, text=True)
@@ -168,8 +169,6 @@ def test_proofs_are_checked_in_fractions_and_by_the_command_line(cli: Path, tmp_
         conform("verified", json.loads(said.stdout))
         report = check.check(answer.proof_json())
         assert report.holds or report.unchecked
-    with pytest.raises(colltrans.CaseError, match="depth of solids has no proof"):
-        colltrans.depth(BOLT, PLATE).proof_json()
 
 
 def changed(claim: Any, *path: Any, by: float) -> str:

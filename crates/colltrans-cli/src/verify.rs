@@ -93,6 +93,10 @@ fn statement_json(
             put("lower", json!(proof.lower));
             put("upper", json!(proof.near.distance()));
         }
+        Statement::SolidDepth(proof) => {
+            put("lower", json!(proof.lower));
+            put("upper", json!(proof.upper));
+        }
         Statement::FreeDirections(of) => {
             put("tolerance", json!(of.tolerance));
         }

@@ -509,8 +509,10 @@ impl PairQuestion {
         })
     }
 
-    /// Computes the answer for solids, and its proof file unless it is an overlap depth. See
-    /// [`ProofFile::with_solid_distance`](crate::ProofFile::with_solid_distance).
+    /// Computes the answer for solids, and its proof file. See
+    /// [`ProofFile::with_solid_distance`](crate::ProofFile::with_solid_distance). That of a depth is
+    /// about translations ([`ProofFile::of_solid_depth`](crate::ProofFile::of_solid_depth)), the answer about
+    /// tolerances.
     ///
     /// # Errors
     /// Returns the errors of the query's method, and an error for a body that cannot be rebuilt from its own
@@ -520,17 +522,20 @@ impl PairQuestion {
         self,
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
-    ) -> Result<(PairAnswer<Solid>, Option<crate::ProofFile>), crate::ProofFileError> {
+    ) -> Result<(PairAnswer<Solid>, crate::ProofFile), crate::ProofFileError> {
         use crate::ProofFile;
         Ok(match self {
             Self::Distance => {
                 let (distance, proof) = ProofFile::with_solid_distance(pair, pieces)?;
-                (PairAnswer::Distance(distance), Some(proof))
+                (PairAnswer::Distance(distance), proof)
             }
-            Self::Depth => (PairAnswer::OverlapDepth(pair.overlap_depth()?), None),
+            Self::Depth => {
+                let proof = ProofFile::of_solid_depth(pair, pieces)?;
+                (PairAnswer::OverlapDepth(pair.overlap_depth()?), proof)
+            }
             Self::Within(length) => {
                 let (within, proof) = ProofFile::with_solid_within(pair, pieces, length)?;
-                (PairAnswer::within_answer(within), Some(proof))
+                (PairAnswer::within_answer(within), proof)
             }
         })
     }

@@ -106,18 +106,10 @@ impl Pair {
         let Of::Solids(pair) = self.asked()? else {
             return Err(error("CaseError", "the bodies are convex"));
         };
-        let within = match question {
-            PairQuestion::Within(length) => Some(length),
-            PairQuestion::Distance => None,
-            PairQuestion::Depth => return Err(error("CaseError", NO_PROOF)),
-        };
         let pieces = [self.bodies[0].pieces().or_raise()?, self.bodies[1].pieces().or_raise()?];
-        ProofFile::of_solid_distance(&pair, [&pieces[0], &pieces[1]], within).or_raise()
+        Ok(question.prove_solids(&pair, [&pieces[0], &pieces[1]]).or_raise()?.1)
     }
 }
-
-const NO_PROOF: &str =
-    "the depth of solids has no proof; save the proof of a clearance, which proves their overlap";
 
 placed_bodies!(Pair);
 

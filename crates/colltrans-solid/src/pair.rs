@@ -104,7 +104,7 @@ pub(crate) struct NearestFacets {
     /// Whether a plane separates the bodies, so that neither is inside the other.
     pub(crate) are_separated: bool,
     /// Cover of all pairs of nodes, if a proof was requested and the lower bound is positive.
-    cover: Option<Cover<Apart>>,
+    pub(crate) cover: Option<Cover<Apart>>,
     /// Lower bound of the distance of the cores that the cover proves, if it is known.
     proven: Option<f64>,
     pub(crate) steps: SolidSteps,
@@ -477,7 +477,7 @@ fn distance_answer(
 /// # Errors
 /// Returns [`CertificateError::Cover`] if the cover does not fit the bodies, or for an entry that proves no positive
 /// distance or is marked as examined without being a pair of leaves.
-fn least_proven_distance(
+pub(crate) fn least_proven_distance(
     scene: &PairFrame,
     near: &SolidNear,
     cover: &Cover<Apart>,

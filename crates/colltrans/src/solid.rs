@@ -6,8 +6,8 @@
 pub use colltrans_proof::SolidStatement;
 #[doc(inline)]
 pub use colltrans_solid::proof::{
-    Apart, Claim, Cover, DistanceCertificate, Reason, SolidCertificate, SolidPairProof, SolidProof,
-    StartProof, StopProof,
+    Apart, Claim, Cover, DepthCertificate, DistanceCertificate, InnerCore, Reason,
+    SolidCertificate, SolidPairProof, SolidProof, StartProof, StopProof,
 };
 #[doc(inline)]
 pub use colltrans_solid::{

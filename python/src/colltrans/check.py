@@ -43,6 +43,11 @@ Notation: moving body ``P``, fixed body ``Q``, direction ``d``, all points in th
 - *Distance of solids.* The two points, one in a facet of each body. A search over pairs of boxes
   and then facets shows that no others are nearer, and a ray that no shell is inside the other
   solid. The cover of the proof is not used.
+- *Depth of solids.* At the stated translation the bodies are apart, by the same search. A box or a
+  point in each body is swept by a ball: no facet is nearer than the radius, and a ray shows that it
+  is inside. No shorter translation separates such boxes. For convex bodies,
+  the closed surface of *Depth*, less the length by which the hulls of their vertices must be shrunk
+  to be inside their facets.
 - *One body among many.* Every obstacle is checked: by its claim, as above, or else by the bounding
   boxes of both bodies, with their distance or the translation at which they meet.
 - *Motions.* For bodies that turn: at the time of each plane, its gap over all vertices, with sine
@@ -1301,6 +1306,18 @@ def enclosure(corners: list[Vector], surface: Any, lower: Fraction) -> None:
         raise RefusedError("the surface does not wind around the origin")
 
 
+def check_enclosure(moving: Body, fixed: Body, surface: Any, lower: Fraction) -> None:
+    """Checks that the differences of two hulls surround the origin at a distance."""
+    corners = [minus(q, p) for p, q in ends_of(moving, fixed, surface["pairs"])]
+    triangles = [listed(t, 3) for t in listed(surface["triangles"])]
+    for normal in listed(surface["normals"], len(triangles)):
+        unit(vector(normal), "the normal of a triangle")
+    enclosure(corners, surface, lower)
+    for a, b, c in triangles:
+        if dot(corners[a], cross(corners[b], corners[c])) < 0:
+            raise RefusedError("a triangle is turned away, as seen from the origin")
+
+
 def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     """Checks the bounds of the shortest translation that separates convex bodies."""
     # The step counts are optional and are not read.
@@ -1328,14 +1345,7 @@ def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
             raise RefusedError(f"the points do not prove a depth of {float(lower)!r}")
         report.holds.append(f"no translation below {float(lower)!r} separates them")
     elif lower > 0 or any(listed(part) for part in surface.values()):
-        corners = [minus(q, p) for p, q in ends_of(moving, fixed, surface["pairs"])]
-        triangles = [listed(t, 3) for t in listed(surface["triangles"])]
-        for normal in listed(surface["normals"], len(triangles)):
-            unit(vector(normal), "the normal of a triangle")
-        enclosure(corners, surface, max(lower - swept, _NO_GAP))
-        for a, b, c in triangles:
-            if dot(corners[a], cross(corners[b], corners[c])) < 0:
-                raise RefusedError("a triangle is turned away, as seen from the origin")
+        check_enclosure(moving, fixed, surface, max(lower - swept, _NO_GAP))
         report.holds.append(f"no translation below {float(lower)!r} separates them")
 
 
@@ -1375,6 +1385,29 @@ def solid_near(moving: Body, fixed: Body, near: Any, report: Report) -> None:
     report.holds.append(f"the bodies are at most {float(upper)!r} apart")
 
 
+def surface_of(body: Body, facets: list[Facet]) -> list[Triangle]:
+    """Returns facets of a body in the world."""
+    placed = [body.at(k) for k in range(len(body.points))]
+    return [(placed[a], placed[b], placed[c]) for a, b, c in facets]
+
+
+def are_surfaces_apart(p: list[Triangle], q: list[Triangle], length: Fraction) -> bool | None:
+    """Checks whether no two facets of two surfaces are nearer than a length, or meet.
+
+    Returns None if this takes too many steps.
+    """
+    corners, unit_of = in_units([[v for t in facets for v in t] for facets in (p, q)])
+    f, g = ([(v[k], v[k + 1], v[k + 2]) for k in range(0, len(v), 3)] for v in corners)
+    square, visited = (length * unit_of) ** 2, 0
+    for pair in near_facets((box_tree(f), box_tree(g)), lambda p, q: 0 < box_gap(p, q) >= square):
+        visited += pair is None
+        if visited > MAX_PAIRS:
+            return None
+        if pair is not None and not are_apart(f[pair[0]], g[pair[1]], square):
+            return False
+    return True
+
+
 def are_solids_apart(moving: Body, fixed: Body, length: Fraction) -> bool | None:
     """Checks whether two solids without their radii are at least a length apart.
 
@@ -1382,25 +1415,12 @@ def are_solids_apart(moving: Body, fixed: Body, length: Fraction) -> bool | None
     many steps, or if open surfaces may have closed parts.
     """
     bodies = (moving, fixed)
-    placed = [[body.at(k) for k in range(len(body.points))] for body in bodies]
-    whole_points, unit_of = in_units(placed)
-    f, g = (
-        [(v[a], v[b], v[c]) for a, b, c in body.facets]
-        for v, body in zip(whole_points, bodies, strict=True)
-    )
-    square, visited = (length * unit_of) ** 2, 0
-    for pair in near_facets((box_tree(f), box_tree(g)), lambda p, q: box_gap(p, q) >= square):
-        visited += pair is None
-        if visited > MAX_PAIRS:
-            return None
-        if pair is not None and not are_apart(f[pair[0]], g[pair[1]], square):
-            return False
+    surfaces = [surface_of(body, body.facets) for body in bodies]
+    apart = are_surfaces_apart(surfaces[0], surfaces[1], length)
+    if not apart:
+        return apart
     for own, other in ((0, 1), (1, 0)):
-        surface, around = (
-            [(placed[k][a], placed[k][b], placed[k][c]) for a, b, c in facets]
-            for k, facets in ((own, bodies[own].facets), (other, bodies[other].shape.closed()))
-        )
-        if is_nested(surface, around):
+        if is_nested(surfaces[own], surface_of(bodies[other], bodies[other].shape.closed())):
             return False
     return None if any(body.shape.has_open_area() for body in bodies) else True
 
@@ -1434,6 +1454,193 @@ def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> Non
     """Checks the distance of solids."""
     solid_near(moving, fixed, fields(claim, "lower near cover")["near"], report)
     solid_gap(moving, fixed, claim, report)
+
+
+# Depths of solids
+# ----------------
+
+#: Maximum number of pairs of cores in a proof.
+MAX_CORES = 32
+
+
+@dataclass(frozen=True)
+class Core:
+    """A box along the axes of the world, or a point, swept by a ball, inside a solid."""
+
+    low: Vector
+    high: Vector
+    radius: Fraction
+
+    @classmethod
+    def read(cls, core: Any) -> Core:
+        core = fields(core, "origin size radius cover")
+        check_letters(core["cover"], "mfpqwnxs")
+        low, size, radius = place(core["origin"]), place(core["size"]), number(core["radius"])
+        if radius < 0 or (any(size) and min(size) <= 0):
+            raise RefusedError("a core has a negative side or radius, or sides of which some are 0")
+        return cls(low, plus(low, size), radius)
+
+    def surface(self) -> list[Triangle]:
+        """Returns the facets of the box, outwards, or the point as one facet."""
+        if self.low == self.high:
+            return [(self.low, self.low, self.low)]
+        v = [(x[0], y[1], z[2]) for x, y, z in product((self.low, self.high), repeat=3)]
+        sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+        return [(v[a], v[i], v[j]) for a, b, c, d in sides for i, j in ((b, c), (c, d))]
+
+    def is_inside(self, solid: Body) -> bool | None:
+        """Checks whether the core is inside a solid; None if this takes too many steps."""
+        box, closed = self.surface(), surface_of(solid, solid.shape.closed())
+        apart = are_surfaces_apart(box, surface_of(solid, solid.facets), self.radius)
+        if not apart:
+            return apart
+        if solid.shape.has_open_area():
+            return None
+        around = box if len(box) > 1 else []
+        return bool(closed) and winds(self.low, closed) > 0 and not is_nested(closed, around)
+
+
+def difference(moving: Core, fixed: Core) -> Bounds[Fraction]:
+    """Returns the box of translations after which the boxes of two cores overlap."""
+    return minus(fixed.low, moving.high), minus(fixed.high, moving.low)
+
+
+def are_covered(boxes: list[Bounds[Fraction]], length: Fraction) -> bool:
+    """Checks whether open boxes contain all points that are nearer to the origin than a length.
+
+    The planes of all boxes divide space into boxes, rectangles, segments and points, and each of
+    these is inside or outside of a box.
+    """
+    axes: list[list[tuple[Fraction, Fraction, Fraction]]] = []
+    for k in range(3):
+        ends = sorted({end[k] for bounds in boxes for end in bounds} | {-length, length})
+        parts = [(end, end) for end in ends] + list(pairwise(ends))
+        nearest = [(min(max(Fraction(), a), b), a, b) for a, b in parts]
+        axes.append([(at * at, a, b) for at, a, b in nearest if abs(at) < length])
+
+    def holds(k: int, among: list[Bounds[Fraction]], square: Fraction) -> bool:
+        for at, a, b in axes[k]:
+            if at >= square:
+                continue
+            inner = [
+                (low, high)
+                for low, high in among
+                if (low[k] < a and b < high[k] if a == b else low[k] <= a and b <= high[k])
+            ]
+            # The other coordinates may be 0.
+            if not inner or (k < 2 and not holds(k + 1, inner, square - at)):
+                return False
+        return True
+
+    return holds(0, boxes, length * length)
+
+
+def is_depth_of_cores(cores: list[tuple[Core, Core]], lower: Fraction, swept: Fraction) -> bool:
+    """Checks whether no translation shorter than a length separates all pairs of swept cores.
+
+    Either the origin is in the difference of one pair, a box swept by a ball, and has this distance
+    from its surface, or the differences of all boxes cover the ball of this radius. ``swept`` is
+    the sum of the radii of the solids.
+    """
+    if lower <= 0:
+        return True
+    differences = [difference(moving, fixed) for moving, fixed in cores]
+    for (low, high), (moving, fixed) in zip(differences, cores, strict=True):
+        between = min(*high, *negative(low))
+        if between >= 0 and lower <= between + moving.radius + fixed.radius + swept:
+            return True
+    return lower > swept and are_covered(differences, lower - swept)
+
+
+def shrinking_loss(body: Body) -> Fraction | None:
+    """Returns the distance by which the hull of a convex solid moves at most, until it is inside.
+
+    For each facet any normal will do, for example the rounded one: the facet is above the height of
+    its lowest corner. No facet meets the region below all of these heights, and the hull, shrunk
+    towards the mean of its vertices, is inside the region. Returns None if this takes too long.
+    """
+    points, shape = body.points, body.shape
+    if any(shape.is_open):
+        raise RefusedError("a body with an open surface is not convex")
+    if len(points) * len(shape.facets) > MAX_PAIRS:
+        return None
+    rounded = [(float(x), float(y), float(z)) for x, y, z in points]
+    placed, most = in_units([points])[0][0], Fraction()
+    count, total = len(points), (0, 0, 0)
+    for v in placed:
+        total = plus(total, v)
+    for facet in shape.facets:
+        area = _rounded_area([rounded[k] for k in facet])
+        n = in_units([[vector(list(area))]])[0][0][0]
+        heights = [dot(n, v) for v in placed]
+        height = min(heights[k] for k in facet)
+        excess, below = max(heights) - height, height - Fraction(dot(n, total), count)
+        if below <= 0:
+            raise RefusedError("a solid with an enclosure is not convex")
+        most = max(most, excess / (excess + below))
+    world = [body.at(k) for k in range(count)]
+    center = mean(world, [Fraction(1, count)] * count)
+    if winds(center, surface_of(body, shape.facets)) <= 0:
+        raise RefusedError("a solid with an enclosure does not contain the mean of its vertices")
+    between = (minus(v, center) for v in world)
+    return most * root_above(max(dot(v, v) for v in between)) if most else most
+
+
+def lower_depth(moving: Body, fixed: Body, claim: Any, lower: Fraction) -> bool | None:
+    """Checks whether no translation below a length separates two solids.
+
+    Returns None if this takes too many steps.
+    """
+    cores, surface, swept = claim["cores"], claim["enclosure"], radii(moving, fixed)
+    pairs = [listed(pair, 2) for pair in listed([] if cores is None else cores)]
+    if pairs and surface is not None:
+        raise RefusedError("a lower bound has two proofs")
+    if len(pairs) > MAX_CORES:
+        raise RefusedError(f"there are more than {MAX_CORES} pairs of cores")
+    if pairs:
+        read = [
+            (Core.read(moving_core), Core.read(fixed_core)) for moving_core, fixed_core in pairs
+        ]
+        inside = [
+            core.is_inside(body)
+            for pair in read
+            for core, body in zip(pair, (moving, fixed), strict=True)
+        ]
+        if False in inside:
+            raise RefusedError("a core is not inside its solid")
+        is_proven = lower >= 0 and is_depth_of_cores(read, lower, swept)
+        return None if is_proven and None in inside else is_proven
+    if surface is not None:
+        surface = fields(surface, "pairs triangles normals")
+        losses = [shrinking_loss(body) for body in (moving, fixed)]
+        known = [loss for loss in losses if loss is not None]
+        least = max(lower - swept, _NO_GAP) + sum(known, Fraction())
+        check_enclosure(moving, fixed, surface, least)
+        return None if None in losses else lower >= 0
+    return lower == 0
+
+
+def solid_depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
+    """Checks the bounds of the shortest translation that separates two solids."""
+    claim = fields(claim, "lower upper translation apart", "cores enclosure")
+    lower, upper = number(claim["lower"]), number(claim["upper"])
+    moved = replace(moving, offset=place(claim["translation"]))
+    if not is_within(moving.offset, moved.offset, upper) or lower > upper:
+        raise RefusedError(f"the translation is longer than {float(upper)!r}, or the lower bound")
+    if number(fields(claim["apart"], "lower near cover")["lower"]) <= 0:
+        raise RefusedError("the bodies are not proven to be apart after the translation")
+    after = Report()
+    solid_distance(moved, fixed, claim["apart"], after)
+    report.has_cover = True
+    separated = f"a translation by {float(upper)!r} separates the bodies"
+    (report.unchecked if after.partly else report.holds).append(separated)
+    found = lower_depth(moving, fixed, claim, lower)
+    if found is False:
+        raise RefusedError(f"no depth of {float(lower)!r} is proven")
+    if lower > 0:
+        none = f"no translation below {float(lower)!r} separates them"
+        (report.unchecked if found is None else report.holds).append(none)
+    report.partly = report.partly or after.partly or found is None
 
 
 # One body among many
@@ -3955,6 +4162,7 @@ PLACED = {
     "distance": distance,
     "depth": depth,
     "solid_distance": solid_distance,
+    "solid_depth": solid_depth,
     "free_directions": free_directions,
 }
 #: The kind of query of each kind of claim.
@@ -3984,7 +4192,7 @@ def check_cast(file: File, kind: str, claim: Any, report: Report) -> None:
 
 def check_pair(file: File, kind: str, claim: Any, report: Report) -> None:
     """Checks a claim about two bodies at fixed poses."""
-    moving, fixed = file.two(solids=kind in ("solid_distance", "free_directions"))
+    moving, fixed = file.two(solids=kind in ("solid_distance", "solid_depth", "free_directions"))
     if kind == "free_directions" and any(moving.shape.is_open + fixed.shape.is_open):
         raise NoProofError("free directions are not claimed for open surfaces")
     if kind == "free_directions" and radii(moving, fixed):

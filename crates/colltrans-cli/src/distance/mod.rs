@@ -12,7 +12,7 @@ use colltrans::record::PairQuestion;
 use crate::args::PlacedArguments;
 use crate::body::Part;
 use crate::driver::{AnswerOutputs, OutputTargets};
-use crate::failure::{Code, Failure};
+use crate::failure::Failure;
 use crate::load;
 use crate::numbers::smaller_extent;
 use crate::picture::draw_pair;
@@ -64,22 +64,22 @@ fn answer_parts(
     files: [&[PathBuf]; 2],
 ) -> Result<(), Failure> {
     let proves = targets.save_proof.is_some();
-    if question == PairQuestion::Depth && proves {
-        let why = "the depth of parts has no proof; `colltrans clearance --save-proof` proves their overlap";
-        return Err(Failure::new(Code::Usage, why));
-    }
     let poses = arguments.places.poses()?;
     let bodies = load::read_parts(files, &arguments.part_options())?;
     load::print_notes(&arguments.places, bodies.iter().flat_map(|body| &body.notes));
     let query = PartsPair { bodies: bodies.each_ref(), poses };
-    let (record, proof) =
-        if proves { query.prove(question)? } else { (query.answer(question)?, Ok(None)) };
+    let (record, proof) = if proves {
+        let (record, proof) = query.prove(question)?;
+        (record, Some(proof))
+    } else {
+        (query.answer(question)?, None)
+    };
     let line = Line::from_record(record);
     let surface = |k: usize, origin| bodies[k].surface(&poses[k], origin);
     targets.write_answer(AnswerOutputs {
         record: &line,
         text: || text::answer_text(question, &line, query.accuracy()),
-        proof: || Ok(proof?.map(|proof| proof.to_json())),
+        proof: || proof.transpose().map(|proof| proof.map(|proof| proof.to_json())),
         picture: || Ok(draw_pair(&line.record, &surface)),
     })
 }

@@ -7,8 +7,8 @@ use super::{Body, PartsQuery, extent, renumber_features};
 use crate::distance::Accuracy;
 use crate::failure::{Code, Failure};
 
-/// The proof, `None` if the answer has none, or the failure of computing it.
-type ProofResult = Result<Option<ProofFile>, Failure>;
+/// The proof, or the failure of computing it.
+type ProofResult = Result<ProofFile, Failure>;
 
 /// Two placed bodies.
 #[derive(Clone, Copy)]
@@ -24,7 +24,8 @@ impl<'a> PartsPair<'a> {
         self.with_names(question.answer_solids(&pair)?.record(&pair)?)
     }
 
-    /// Answers the question, and proves the distance or its comparison with a length.
+    /// Answers the question, and proves the distance, its comparison with a length, or the length of the shortest
+    /// separating translation.
     ///
     /// # Errors
     /// The query fails. A failure of the proof is part of the result.

@@ -61,6 +61,7 @@ impl PairBody for ConvexPolyhedron {
             PairProof::Gap(plane) => verify::verify_plane(&pair.bodies, plane),
             PairProof::Near(points) => verify::verify_points(&pair.bodies, points),
             PairProof::Depth(depth) => verify::verify_depth(&pair.bodies, depth),
+            PairProof::Enclosure(surface) => verify::enclosed_radius(&pair.bodies, surface),
         }
     }
 }

@@ -6,7 +6,7 @@ mod rounded;
 mod verify;
 
 use crate::answer::{
-    CertificateError, Depth, Distance, NearPoints, PlaneGap, Within, impl_from_proofs,
+    CertificateError, Depth, Distance, Enclosure, NearPoints, PlaneGap, Within, impl_from_proofs,
 };
 use crate::body::{Body, ConvexPolyhedron, Features, Placed, Pose};
 use crate::setting::TwoBodies;
@@ -64,9 +64,13 @@ pub enum PairProof<'a> {
     Near(&'a NearPoints),
     /// Proof of both bounds of a depth.
     Depth(&'a Depth),
+    /// Proof that the depth of the cores, the bodies without their radii, is at least a number.
+    Enclosure(&'a Enclosure),
 }
 
-impl_from_proofs!(PairProof { Gap(PlaneGap), Near(NearPoints), Depth(Depth) });
+impl_from_proofs!(
+    PairProof { Gap(PlaneGap), Near(NearPoints), Depth(Depth), Enclosure(Enclosure) }
+);
 
 impl<'a, B: Body> Pair<'a, B> {
     /// Builds a pair of two placed bodies.
@@ -218,7 +222,7 @@ impl<B: PairBody> Pair<'_, B> {
     ///
     /// - for a plane its gap, in world units,
     /// - for two points their distance, in world units,
-    /// - for a depth a lower bound of the true depth, in world units,
+    /// - for a depth or an enclosure a lower bound of the true depth, in world units,
     /// - for a certificate of solids the difference of its bounds.
     ///
     /// The check is independent of the search. For convex bodies it examines all vertices for a plane, and

@@ -107,7 +107,10 @@ pub(super) fn verify_depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, Cer
 /// Returns a lower bound of the distance of the origin from a surface around it.
 ///
 /// Returns an error if the surface is malformed or does not enclose the origin.
-fn enclosed_radius(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, CertificateError> {
+pub(super) fn enclosed_radius(
+    bodies: &TwoBodies,
+    surface: &Enclosure,
+) -> Result<f64, CertificateError> {
     let Enclosure { pairs, triangles, normals } = surface;
     check_vertices_exist(bodies, pairs)?;
     let fits = |corners: &[u32; 3]| corners.iter().all(|k| (*k as usize) < pairs.len());

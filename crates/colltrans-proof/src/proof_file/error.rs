@@ -73,7 +73,7 @@ pub enum ProofFileError {
     #[error(
         "the statement must make a claim and fit the query, the placement and the bodies: a cast has \
          contacts or a separation of two convex bodies, or a clearance of two solids; a pair has a distance or a \
-         depth of two convex bodies, or a solid_distance or free_directions of two solids; a scene has nearest, \
+         depth of two convex bodies, or a solid_distance, solid_depth or free_directions of two solids; a scene has nearest, \
          within or scene_clearance; motions have motions, one for each pair; a path has a path"
     )]
     Statement,

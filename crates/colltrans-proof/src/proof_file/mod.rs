@@ -38,6 +38,7 @@ use colltrans_scene::{ClearanceProof, NearbyProof, NearestProof};
 use colltrans_solid::body::Solid;
 use colltrans_solid::kinds::AnyPlaced;
 use colltrans_solid::pair::{DistanceCertificate, ProofInput};
+use colltrans_solid::penetration::{DepthCertificate, SolidPenetration};
 use colltrans_solid::{SolidCast, SolidPairSearch, SolidSteps};
 
 use body::StoredBody;
@@ -67,6 +68,8 @@ pub enum Statement {
     Depth(Depth),
     /// Distance of solids in their given poses.
     SolidDistance(DistanceCertificate),
+    /// Depth of solids in their given poses.
+    SolidDepth(DepthCertificate),
     /// Free directions of a solid.
     FreeDirections(FreeStatement),
     /// Nearest of several obstacles.
@@ -255,6 +258,24 @@ impl ProofFile {
         length: f64,
     ) -> Result<((Within<Solid>, SolidSteps), Self), ProofFileError> {
         Self::with_search(pair, pieces, |pair| pair.within_with_proof_input(length, true))
+    }
+
+    /// Computes [`SolidPenetration::certified_depth`] for bodies that are rebuilt from the file. `pieces` has
+    /// the meaning that it has for [`Self::of_solids`].
+    ///
+    /// # Errors
+    /// Returns the errors of the query, and an error for a body that cannot be rebuilt from its own facets.
+    pub fn of_solid_depth(
+        pair: &Pair<'_, Solid>,
+        pieces: [&[&Solid]; 2],
+    ) -> Result<Self, ProofFileError> {
+        let made = RebuiltSolids::rebuild(pieces, [pair.moving(), pair.fixed()])?;
+        let [moving, fixed] = made.solids()?;
+        let poses = [pair.moving_pose(), pair.fixed_pose()];
+        let mut proof = Pair::new(moving.at(poses[0]), fixed.at(poses[1]))?.certified_depth()?;
+        proof.apart = with_file_facets(proof.apart, [moving, fixed]);
+        let (placement, query) = (Placement::of_two(poses), Query::Pair);
+        Ok(Self::new(made.0.into(), placement, query, Statement::SolidDepth(proof)))
     }
 
     /// Computes an answer about the given bodies, and its proof about the bodies of the file.

@@ -20,6 +20,7 @@ use colltrans_solid::SolidCast;
 use colltrans_solid::body::Solid;
 use colltrans_solid::cast::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
 use colltrans_solid::pair::DistanceCertificate;
+use colltrans_solid::penetration::{DepthCertificate, SolidPenetration};
 use colltrans_solid::solve::contact::SolidContact;
 use colltrans_solid::solve::nearest::SolidNear;
 
@@ -211,11 +212,28 @@ impl Verify<'_, Pair<'_>> for Depth {
 /// The certificate of a file identifies triangles by the facets of the file.
 impl Verify<'_, Pair<'_, Solid>> for DistanceCertificate {
     fn verify(&self, pair: &Pair<'_, Solid>) -> Result<Proven<'static>, ProofError> {
-        let place = |k: usize, facet| triangle_of_facet([pair.moving(), pair.fixed()][k], facet);
-        let near = rename_triangles(self.near, place).ok_or(CertificateError::StartClaim)?;
-        pair.verify(&Self { near, ..self.clone() })?;
+        pair.verify(&with_triangles(self, pair)?)?;
         Ok(Proven::Statement)
     }
+}
+
+/// The certificate of a file identifies triangles by the facets of the file.
+impl Verify<'_, Pair<'_, Solid>> for DepthCertificate {
+    fn verify(&self, pair: &Pair<'_, Solid>) -> Result<Proven<'static>, ProofError> {
+        let apart = with_triangles(&self.apart, pair)?;
+        pair.verify_depth(&Self { apart, ..self.clone() })?;
+        Ok(Proven::Statement)
+    }
+}
+
+/// Returns a proof of a file that identifies triangles by their positions in the solids.
+fn with_triangles(
+    of: &DistanceCertificate,
+    pair: &Pair<'_, Solid>,
+) -> Result<DistanceCertificate, CertificateError> {
+    let place = |k: usize, facet| triangle_of_facet([pair.moving(), pair.fixed()][k], facet);
+    let near = rename_triangles(of.near, place).ok_or(CertificateError::StartClaim)?;
+    Ok(DistanceCertificate { near, ..of.clone() })
 }
 
 /// Returns a proof that identifies triangles by the facets of the file.

@@ -11,6 +11,7 @@ use colltrans_removal::directions::CellProof;
 use colltrans_scene::{ClearanceProof, NearbyProof, NearestProof};
 use colltrans_solid::cast::{SolidCertificate, StartOverlap, StartProof};
 use colltrans_solid::pair::DistanceCertificate;
+use colltrans_solid::penetration::DepthCertificate;
 
 /// Maximum number of obstacles that a text names.
 const MAX_NAMED: usize = 12;
@@ -96,6 +97,12 @@ impl Statement {
                 let lower = Some(*lower).filter(|lower| *lower > 0.0);
                 f.write_str(&distance_text(lower, Some(near.distance())))
             }
+            Self::SolidDepth(DepthCertificate { lower, upper, translation, .. }) => write!(
+                f,
+                "the bodies are apart after a translation of at most {upper:?}, of the moving one to {:?}; no \
+                 translation below {lower:?} separates their interiors",
+                translation.to_array()
+            ),
             Self::FreeDirections(statement) => fmt::Display::fmt(statement, f),
             Self::Nearest(NearestProof { lower, obstacle, near, .. }) => {
                 let upper = near.distance();

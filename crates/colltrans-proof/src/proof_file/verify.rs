@@ -66,6 +66,9 @@ impl ProofFile {
                     (Statement::SolidDistance(of), [Solid(p), Solid(q)]) => {
                         boxed_claim(of, Pair::new(p, q)?)
                     }
+                    (Statement::SolidDepth(of), [Solid(p), Solid(q)]) => {
+                        boxed_claim(of, Pair::new(p, q)?)
+                    }
                     (Statement::FreeDirections(of), [Solid(p), Solid(q)]) => {
                         boxed_claim(of, [p, q])
                     }

@@ -8,8 +8,9 @@ use colltrans_proof::ProofFile;
 use colltrans_scene::{Obstacles, SceneQuery};
 use colltrans_solid::{AsSolid, Solid, SolidOptions, StartOverlap};
 use colltrans_testkit::bodies::{at_xyz as pose, cube};
+use colltrans_testkit::cases;
 use colltrans_testkit::oracle::proofs::checkers::{RationalChecker, Verdict, verify};
-use colltrans_testkit::oracle::proofs::{Campaign, KINDS};
+use colltrans_testkit::oracle::proofs::{Campaign, KINDS, solid_depths};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::tally::Tally;
 use glam::{DQuat, DVec3};
@@ -249,6 +250,97 @@ fn both_checkers_accept_distance_proof_of_union() {
         if let Some(fractions) = &mut fractions {
             assert_eq!(fractions.check(&text), Verdict::HoldsPartly, "{text}");
         }
+    }
+}
+
+/// Both checkers accept proofs of depths, and refuse each changed number. Only the library reads covers.
+#[test]
+#[ignore = "long: every changed proof is checked in fractions"]
+fn changed_depth_proofs_of_solids_are_refused() {
+    let mut fractions = start_fractions();
+    let (mut proofs, mut with_cores, mut with_enclosure) = (0, 0, 0);
+    for seed in 0..cases(160) {
+        let Some(text) = (solid_depths::DEPTHS.draw_proof)(seed) else { continue };
+        proofs += 1;
+        let file: Value = serde_json::from_str(&text).expect("JSON");
+        let depth = &file["statement"]["solid_depth"];
+        let number = |name: &str| depth[name].as_f64().expect("a number");
+        for verdict in verdicts(&file, &mut fractions) {
+            assert!(verdict.accepts(), "{seed}: {verdict:?}: {file}");
+        }
+        let mut changes = vec![("lower", json!(number("lower") * (1.0 + 1e-6) + 1e-9))];
+        changes.push(("translation", file["placement"]["poses"][0]["pose"]["translation"].clone()));
+        if number("upper") > 0.0 {
+            changes.push(("upper", json!(number("upper") * (1.0 - 1e-12))));
+        } else {
+            changes.pop();
+        }
+        for (name, value) in changes {
+            let mut other = file.clone();
+            other["statement"]["solid_depth"][name] = value;
+            assert_refused(&other, &mut fractions);
+        }
+        let mut shorter = file.clone();
+        let cover = &mut shorter["statement"]["solid_depth"]["apart"]["cover"];
+        *cover = json!(cover.as_str().expect("letters").strip_suffix(char::is_alphabetic));
+        assert!(matches!(verify(&shorter.to_string()), Verdict::Refused(_)), "{seed}");
+        if let Some(cores) = depth["cores"].as_array().filter(|cores| !cores.is_empty()) {
+            with_cores += 1;
+            for place in 0..2 {
+                let core = format!("/statement/solid_depth/cores/{}/{}", place / 2, place % 2);
+                let radius = cores[place / 2][place % 2]["radius"].as_f64().expect("a radius");
+                let wide = json!(radius * (1.0 + 1e-6) + 1e-9);
+                for (name, value) in [("radius", wide), ("origin", json!([1e3, 1e3, 1e3]))] {
+                    let mut other = file.clone();
+                    *other.pointer_mut(&format!("{core}/{name}")).expect("a core") = value;
+                    assert_refused(&other, &mut fractions);
+                }
+                // A box that reaches through the surface.
+                let mut other = file.clone();
+                let wide = other.pointer_mut(&core).expect("a core");
+                (wide["size"], wide["radius"]) = (json!([1e3, 1e3, 1e3]), json!(0.0));
+                assert_refused(&other, &mut fractions);
+            }
+        }
+        if depth["enclosure"].is_object() {
+            with_enclosure += 1;
+            let mut other = file.clone();
+            let surface = &mut other["statement"]["solid_depth"]["enclosure"];
+            for list in ["triangles", "normals"] {
+                surface[list].as_array_mut().expect("a list").pop();
+            }
+            assert_refused(&other, &mut fractions);
+        }
+        if number("lower") > 0.0 && file["bodies"][0] != file["bodies"][1] {
+            let mut swapped = file;
+            let poses = &mut swapped["placement"]["poses"];
+            (poses[0]["body"], poses[1]["body"]) =
+                (poses[1]["body"].clone(), poses[0]["body"].clone());
+            assert_refused(&swapped, &mut fractions);
+        }
+    }
+    let few = cases(160) as usize / 8;
+    assert!(proofs > 2 * few && with_cores > few && with_enclosure > few / 4, "{proofs}");
+}
+
+/// The radii of rounded solids count only if parts of their cores overlap.
+#[test]
+fn depths_of_cores_apart_are_refused() {
+    let mut fractions = start_fractions();
+    let round = cube().as_solid().expect("a solid").clone().rounded(0.5).expect("a radius");
+    let file = |places: [f64; 2]| -> Value {
+        let [moving, fixed] = places.map(|x| round.at(pose(x, 0.0, 0.0)));
+        let pair = Pair::new(moving, fixed).expect("a pair");
+        let proof = ProofFile::of_solid_depth(&pair, [&[&round], &[&round]]).expect("a proof");
+        serde_json::from_str(&proof.to_json()).expect("JSON")
+    };
+    let core = |x: f64, k: usize| file([x, x])["statement"]["solid_depth"]["cores"][0][k].clone();
+    for x in [1.75, 100.0] {
+        let mut forged = file([0.0, x]);
+        let depth = &mut forged["statement"]["solid_depth"];
+        (depth["cores"], depth["lower"]) = (json!([[core(0.0, 0), core(x, 1)]]), json!(0.9));
+        depth["upper"] = json!(1.0_f64.max(depth["upper"].as_f64().expect("a number")));
+        assert_refused(&forged, &mut fractions);
     }
 }
 

@@ -26,11 +26,22 @@ const MARGIN: f64 = 4.0;
 /// Relative margin for rounding errors of lengths.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Computes a lower bound of the depth, from boxes inside both bodies at their places. Shortens the upper bound where
-/// the bodies turn out to be separated.
-pub(super) fn cover_bound(shortest: &mut Shortest, first: &InnerPair) -> f64 {
-    let mut boxes = Vec::new();
-    boxes.extend(difference_box(first, DVec3::ZERO, shortest.noise));
+/// A box in the moving body and one in the fixed body, both in the world.
+pub(super) type BoxPair = [Aabb; 2];
+
+/// Computes a lower bound of the depth from boxes inside both bodies, and returns these boxes. Shortens the upper bound
+/// where the bodies turn out to be separated.
+pub(super) fn cover_bound(shortest: &mut Shortest, first: &InnerPair) -> (f64, Vec<BoxPair>) {
+    let (mut pairs, mut boxes, noise) = (Vec::new(), Vec::new(), shortest.noise);
+    let mut add = |pair: Option<BoxPair>, beyond: Option<DVec3>, boxes: &mut Vec<Aabb>| {
+        let Some(pair) = pair else { return };
+        let Some(bounds) = difference_box(&pair, noise) else { return };
+        if boxes.len() < MAX_BOXES && beyond.is_none_or(|point| contains(&bounds, point)) {
+            boxes.push(bounds);
+            pairs.push(pair);
+        }
+    };
+    add(boxes_before(first, DVec3::ZERO), None, &mut boxes);
     let mut lower = 0.0_f64;
     while boxes.len() < MAX_BOXES {
         let nearest = nearest_outside(&boxes);
@@ -44,22 +55,26 @@ pub(super) fn cover_bound(shortest: &mut Shortest, first: &InnerPair) -> f64 {
         let Some(displaced) = shortest.displaced(nearest) else { break };
         let Ok(scene) = pair_scene(&displaced) else { break };
         let by = displaced.bodies.translations[0] - shortest.pair.bodies.translations[0];
-        let found = find_boxes(&displaced, &scene, shortest.length, MAX_CENTERS);
-        let found =
-            found.into_iter().filter_map(|inner| difference_box(&inner, by, shortest.noise));
         let before = boxes.len();
-        boxes.extend(found.filter(|bounds| contains(bounds, nearest)).take(MAX_BOXES - before));
+        for inner in find_boxes(&displaced, &scene, shortest.length, MAX_CENTERS) {
+            add(boxes_before(&inner, by), Some(nearest), &mut boxes);
+        }
         if boxes.len() == before {
             break;
         }
     }
-    lower
+    (lower, pairs)
 }
 
-/// Returns the open box of translations after which boxes overlap that are inside both bodies after the translation `by`.
-fn difference_box(inner: &InnerPair, by: DVec3, noise: f64) -> Option<Aabb> {
-    let InnerPair::Boxes { moving, fixed } = inner else { return None };
-    let bounds = Aabb { low: fixed.low - moving.high + by, high: fixed.high - moving.low + by };
+/// Returns boxes that are inside both bodies after a translation of the moving one, at their places before it.
+fn boxes_before(inner: &InnerPair, by: DVec3) -> Option<BoxPair> {
+    let InnerPair::Boxes { moving, fixed } = *inner else { return None };
+    Some([Aabb { low: moving.low - by, high: moving.high - by }, fixed])
+}
+
+/// Returns the open box of translations after which two boxes overlap.
+fn difference_box([moving, fixed]: &BoxPair, noise: f64) -> Option<Aabb> {
+    let bounds = Aabb { low: fixed.low - moving.high, high: fixed.high - moving.low };
     let bounds = bounds.expanded(-MARGIN * noise);
     bounds.low.cmplt(bounds.high).all().then_some(bounds)
 }
@@ -70,7 +85,7 @@ fn contains(bounds: &Aabb, point: DVec3) -> bool {
 }
 
 /// Returns the point that is nearest to the origin among those that none of some open boxes contains.
-fn nearest_outside(boxes: &[Aabb]) -> DVec3 {
+pub(super) fn nearest_outside(boxes: &[Aabb]) -> DVec3 {
     if boxes.is_empty() {
         return DVec3::ZERO;
     }

@@ -15,7 +15,7 @@
 use glam::DVec3;
 
 use super::cells::{common_box, near_facets};
-use super::cover::cover_bound;
+use super::cover::{BoxPair, cover_bound};
 use super::inner::{InnerPair, find_inner_pair};
 use super::surface::{core_distance, core_distances};
 use crate::body::Solid;
@@ -100,9 +100,16 @@ impl SolidDepth {
 
 /// Computes bounds of the depth of two bodies.
 pub(super) fn depth(pair: &Pair<'_, Solid>) -> Result<SolidDepth, QueryError> {
+    Ok(depth_with_boxes(pair)?.0)
+}
+
+/// Computes bounds of the depth of two bodies, and the boxes inside both if it takes several to prove the lower bound.
+pub(super) fn depth_with_boxes(
+    pair: &Pair<'_, Solid>,
+) -> Result<(SolidDepth, Vec<BoxPair>), QueryError> {
     let has_interior = |body: &Solid| body.has_interior() || body.radius() > 0.0;
     if !has_interior(pair.moving()) || !has_interior(pair.fixed()) || are_separated(pair)? {
-        return Ok(SolidDepth::ZERO);
+        return Ok((SolidDepth::ZERO, Vec::new()));
     }
     let scene = pair_scene(pair)?;
     let hulls = bounds_of_hulls(pair);
@@ -117,20 +124,26 @@ pub(super) fn depth(pair: &Pair<'_, Solid>) -> Result<SolidDepth, QueryError> {
         found.search(&scene);
     }
     let inner = if hulls.is_some() { None } else { find_inner_pair(pair, &scene, found.length) };
+    let mut boxes = Vec::new();
     let lower = match (hulls, &inner) {
         (Some((lower, _)), _) => lower,
         (None, Some(inner)) if found.radii > 0.0 => inner.depth(),
-        (None, Some(inner)) => inner.depth().max(cover_bound(&mut found, inner)),
+        (None, Some(inner)) => {
+            let (bound, pairs) = cover_bound(&mut found, inner);
+            boxes = pairs;
+            inner.depth().max(bound)
+        }
         (None, None) if found.radii > 0.0 => found.bound_of_balls()?,
         (None, None) => 0.0,
     };
-    Ok(SolidDepth {
+    let depth = SolidDepth {
         lower: lower.min(found.length),
         upper: found.length,
         translation: found.translation,
         direction: found.translation.normalize_or_zero(),
         inner,
-    })
+    };
+    Ok((depth, boxes))
 }
 
 /// Checks whether the interiors of two bodies have no common point: exactly for solids, and if the distance is certainly

@@ -3,20 +3,24 @@
 //! - `surface`: the distance of two surfaces, also if one lies inside the other body, and signed distances of points.
 //! - `common`: how two bodies lie to each other, and their common part, with its volume by `cells`.
 //! - `depth`: the length of the shortest translation that separates two overlapping bodies, from below by `inner` and `cover`.
+//! - `certificate`: proofs of both bounds of the depth, and their verification.
 
 mod cells;
+mod certificate;
 mod common;
 mod cover;
 mod depth;
 mod inner;
 mod surface;
 
+pub use certificate::{DepthCertificate, InnerCore};
 pub use common::{CommonPart, Relation, VolumeOptions};
 pub use depth::SolidDepth;
 pub use inner::InnerPair;
 pub use surface::{SignedDistance, SignedDistanceError, SurfaceDistance};
 
 use crate::body::Solid;
+use colltrans_convex::answer::CertificateError;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
 
@@ -97,6 +101,37 @@ pub trait SolidPenetration {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     fn depth(&self) -> Result<SolidDepth, QueryError>;
+
+    /// Computes bounds of the depth and their proof. The bounds may be farther apart than those of
+    /// [`depth`](Self::depth), because the proof moves the bodies apart by more than rounding errors, and of rounded
+    /// bodies whose cores do not overlap it proves no lower bound.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Pair::distance`], and [`QueryError::NotASolid`] if the bodies are not proven to be apart
+    /// after any translation.
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::solid::{SolidPair, SolidPenetration};
+    /// use colltrans::{ConvexPolyhedron, Pair, Pose};
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::splat(2.0))?;
+    /// let there = Pose::from_translation(DVec3::new(1.0, 1.5, 0.0))?;
+    /// let pair = Pair::between(cube.at(Pose::IDENTITY), cube.at(there))?;
+    /// let mut proof = pair.certified_depth()?;
+    /// assert!(proof.lower <= 0.5 && 0.5 <= proof.upper && proof.upper - proof.lower < 1e-9);
+    /// pair.verify_depth(&proof)?;
+    /// proof.lower += 0.01;
+    /// assert!(pair.verify_depth(&proof).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn certified_depth(&self) -> Result<DepthCertificate, QueryError>;
+
+    /// Verifies a proof of the depth without a search. Returns the difference of its bounds.
+    ///
+    /// # Errors
+    /// Returns the first claim that is not proven.
+    fn verify_depth(&self, proof: &DepthCertificate) -> Result<f64, CertificateError>;
 }
 
 impl SolidPenetration for Pair<'_, Solid> {
@@ -110,5 +145,13 @@ impl SolidPenetration for Pair<'_, Solid> {
 
     fn depth(&self) -> Result<SolidDepth, QueryError> {
         depth::depth(self)
+    }
+
+    fn certified_depth(&self) -> Result<DepthCertificate, QueryError> {
+        certificate::certified_depth(self)
+    }
+
+    fn verify_depth(&self, proof: &DepthCertificate) -> Result<f64, CertificateError> {
+        certificate::verify_depth(self, proof)
     }
 }

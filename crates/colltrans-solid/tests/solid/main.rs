@@ -4,6 +4,7 @@ mod allocation;
 mod casts;
 mod common;
 mod convex;
+mod depth_proof;
 mod distance;
 mod features;
 mod fuzz_corpus;

@@ -18,10 +18,10 @@ use crate::common::{at, cuboid, solid};
 const SIDE: i64 = 4;
 
 /// Cells of side 1, by their lowest corners, and their squares as boxes without thickness.
-struct Polycube {
+pub(crate) struct Polycube {
     cells: Vec<[i64; 3]>,
     squares: Vec<[DVec3; 2]>,
-    solid: Solid,
+    pub(crate) solid: Solid,
 }
 
 impl Polycube {
@@ -58,7 +58,7 @@ impl Polycube {
     }
 
     /// Draws some cells of a cube of cells, or the cube with few cells left out.
-    fn random(random: &mut Random) -> Self {
+    pub(crate) fn random(random: &mut Random) -> Self {
         loop {
             let rare = random.one_in(2);
             let mut cells = Vec::new();
@@ -88,7 +88,7 @@ fn squared_distance([low, high]: [DVec3; 2], [least, most]: [DVec3; 2]) -> f64 {
     (least - high).max(low - most).max(DVec3::ZERO).length_squared()
 }
 
-fn quarters(random: &mut Random, low: i64, high: i64) -> DVec3 {
+pub(crate) fn quarters(random: &mut Random, low: i64, high: i64) -> DVec3 {
     random.grid(low, high) / 4.0
 }
 
@@ -162,7 +162,7 @@ fn signed_distances_name_the_invalid_point() {
 
 impl Polycube {
     /// Returns the solid, or in half of the cases the union of its cells, which has facets inside.
-    fn drawn_solid(&self, random: &mut Random) -> Solid {
+    pub(crate) fn drawn_solid(&self, random: &mut Random) -> Solid {
         if random.one_in(2) {
             return self.solid.clone();
         }
@@ -379,7 +379,7 @@ fn volumes_on_both_sides_of_a_plane_add_up() {
 /// Returns the exact square of the depth of polycubes. The displacements after which two cells share interior points
 /// form an open cube. The planes of all cubes divide space into boxes, rectangles, segments and points. The depth is
 /// the distance of the nearest of these that no cube contains.
-fn exact_squared_depth(moving: &Polycube, fixed: &Polycube, by: DVec3) -> f64 {
+pub(crate) fn exact_squared_depth(moving: &Polycube, fixed: &Polycube, by: DVec3) -> f64 {
     let mut centers: Vec<DVec3> =
         moving.lows().flat_map(|p| fixed.lows().map(move |q| q - p - by)).collect();
     centers.sort_by(|p, q| p.to_array().partial_cmp(&q.to_array()).expect("finite"));

@@ -24,7 +24,7 @@ pub use surface::{FacetGroup, NEAR_NOISES, Surface, SurfacePoint};
 /// its reach.
 const CONVEXITY_TOLERANCE: f64 = 1e-9;
 /// Rounding error of a height above a plane of a body, as a share of its reach.
-const HEIGHT_ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub(crate) const HEIGHT_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Two placed convex solids, and their hulls in the same poses.
 #[derive(Debug, Clone, Copy)]

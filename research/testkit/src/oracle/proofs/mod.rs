@@ -21,6 +21,7 @@ pub mod mutants;
 pub mod pairs;
 pub mod paths;
 pub mod scenes;
+pub mod solid_depths;
 pub mod solids;
 
 use serde_json::Value;
@@ -84,13 +85,14 @@ pub struct Kind {
 }
 
 /// All kinds.
-pub const KINDS: [Kind; 11] = [
+pub const KINDS: [Kind; 12] = [
     casts::CASTS,
     casts::WITH_GAP,
     pairs::DISTANCES,
     pairs::DEPTHS,
     solids::CLEARANCES,
     solids::DISTANCES,
+    solid_depths::DEPTHS,
     motions::CONVEX,
     motions::SOLIDS,
     paths::PATHS,

@@ -364,6 +364,12 @@ impl<'a> Bodies<'a> {
         self.own_fit(pair).map_or(self.fit, |own| own.fit)
     }
 
+    /// Returns the tolerance of a pair: the sum of the lengths by which its bodies are shrunk.
+    pub fn pair_tolerance(&self, pair: [usize; 2]) -> f64 {
+        let fit = self.pair_fit(pair);
+        pair.map(|k| fit.shrink_distance(&self.assembly.parts()[k])).iter().sum()
+    }
+
     /// Returns the contacts that a pair with a fit of its own tolerates; `None` without such a fit.
     pub fn tolerated_contacts(&self, pair: [usize; 2]) -> Option<PairTolerance> {
         self.own_fit(pair).map(|own| own.tolerated)

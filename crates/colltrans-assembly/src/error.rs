@@ -1,5 +1,6 @@
 //! Errors of assemblies.
 
+use colltrans::QueryError;
 use colltrans::removal::directions::FreeError;
 use colltrans_mesh::body::BodyError;
 use thiserror::Error;
@@ -125,6 +126,16 @@ pub enum AssemblyError {
         b: String,
         /// Reason.
         why: &'static str,
+    },
+    /// A query of two parts has no answer.
+    #[error("{a} and {b}: {source}")]
+    Query {
+        /// Name of the first part.
+        a: String,
+        /// Name of the second part.
+        b: String,
+        /// Reason.
+        source: QueryError,
     },
     /// The search for free directions failed.
     #[error(transparent)]

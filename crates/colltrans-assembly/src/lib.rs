@@ -6,6 +6,7 @@
 //! - [`hints`], [`liaisons`] (contacts), [`candidates`] (directions, also of [`cylinders`] and [`inertia`])
 //! - [`matrix`], [`travel`] (blockers and free travel) -> [`blocking`] (graph, [`constraints`]) -> [`plan`] ([`identical`]),
 //!   [`map`]
+//! - [`audit`]: pairs that interfere or are too near, without a plan
 //! - [`record`] (JSON) and [`report`] (pictures, HTML, animation; feature `report`)
 //!
 //! Lengths are in the unit of the files. Results do not depend on the number of threads. One matrix serves all states
@@ -24,6 +25,7 @@ mod witness;
 #[cfg(test)]
 mod work;
 
+pub mod audit;
 pub mod blocking;
 pub mod candidates;
 pub mod colour;

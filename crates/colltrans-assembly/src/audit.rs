@@ -1,0 +1,412 @@
+//! The audit of an assembly: all pairs of parts that interfere, touch, or are nearer than a required clearance.
+//!
+//! - Candidates are the pairs whose boxes come within the clearance or the tolerance of the pair, found by a tree of
+//!   boxes. All other pairs are farther apart.
+//! - A pair *interferes* if its bodies of a plan, each shrunk by its share of the tolerance, overlap, and no translation
+//!   of at most the tolerance was found that separates the parts. A part inside another one also counts: *contained* if
+//!   the surfaces do not cross.
+//! - A pair *touches* if it does not interfere, and its distance is at most the tolerance of the pair. Hence rounding of
+//!   the files and permitted overlaps are contacts.
+//! - All other pairs are *apart*. They are reported if they are proven to be nearer than the clearance.
+//!
+//! Pairs with a role or tolerance of their own are meant to touch and have no clearance. Ignored and glued pairs are
+//! left out. Results do not depend on the number of threads. Memory is proportional to the number of reported pairs.
+
+mod tables;
+
+use std::cmp::Ordering;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+use colltrans::solid::{
+    CommonPart, Overlap, Relation, SolidDepth, SolidPenetration, SurfaceDistance, VolumeOptions,
+};
+use colltrans::{Aabb, MAX_MAGNITUDE, Pair, Pose, QueryError, Solid};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::bodies::{Bodies, MOST_NEIGHBOURS};
+use crate::boxes::BoxTree;
+use crate::error::AssemblyError;
+use crate::part::Assembly;
+use crate::roles::PairTolerance;
+use crate::watch::{Stage, Watch};
+
+pub use tables::{audit_csv, audit_json};
+
+/// Maximum number of cells of a volume. Thin common parts of curved fits would take ten times more for 1 %.
+const MAX_CELLS: u32 = 10_000;
+
+/// Clearance between two groups of parts.
+#[derive(Debug, Clone, PartialEq)]
+struct ClearanceLevel {
+    /// Indices of the parts of both groups, sorted.
+    groups: [Vec<usize>; 2],
+    length: f64,
+}
+
+/// Required clearances of an [`audit`].
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct AuditOptions {
+    /// Clearance of pairs without a level of their own. The default is 0: only interferences are violations.
+    pub within: f64,
+    /// Whether pairs that touch satisfy every clearance.
+    pub allow_contact: bool,
+    /// Accuracy and cost of volumes. The default has at most 10,000 cells.
+    pub volume: VolumeOptions,
+    /// Clearances of groups. A later one replaces an earlier one.
+    levels: Vec<ClearanceLevel>,
+}
+
+impl Default for AuditOptions {
+    fn default() -> Self {
+        let (allow_contact, volume) = (false, VolumeOptions::default().with_max_cells(MAX_CELLS));
+        Self { within: 0.0, allow_contact, volume, levels: Vec::new() }
+    }
+}
+
+impl AuditOptions {
+    /// Returns the options with another clearance of pairs without a level of their own.
+    ///
+    /// # Errors
+    /// [`AssemblyError::InvalidValue`] if the length is negative, not finite or too large.
+    pub fn with_within(self, within: f64) -> Result<Self, AssemblyError> {
+        Ok(Self { within: checked_clearance(within)?, ..self })
+    }
+
+    /// Returns the options with a clearance between two groups of parts. It replaces earlier ones of the same pairs.
+    /// Names are patterns of [`Assembly::parts_named`].
+    ///
+    /// # Errors
+    /// - [`AssemblyError::UnknownPart`]
+    /// - [`AssemblyError::InvalidValue`] if the length is negative, not finite or too large.
+    pub fn with_level<S: AsRef<str>>(
+        mut self,
+        assembly: &Assembly,
+        [first, second]: [&[S]; 2],
+        length: f64,
+    ) -> Result<Self, AssemblyError> {
+        let groups = [assembly.parts_named(first)?, assembly.parts_named(second)?];
+        self.levels.push(ClearanceLevel { groups, length: checked_clearance(length)? });
+        Ok(self)
+    }
+
+    /// Returns the options that let pairs touch, or not.
+    #[must_use]
+    pub fn with_allow_contact(self, allow_contact: bool) -> Self {
+        Self { allow_contact, ..self }
+    }
+
+    /// Returns the required clearance of a pair. It is 0 for pairs with a role or tolerance of their own.
+    fn clearance(&self, assembly: &Assembly, [a, b]: [usize; 2]) -> f64 {
+        if assembly.pair_fit(a, b).is_some() {
+            return 0.0;
+        }
+        let covers = |level: &&ClearanceLevel| {
+            let has = |group: usize, part| level.groups[group].binary_search(&part).is_ok();
+            has(0, a) && has(1, b) || has(0, b) && has(1, a)
+        };
+        self.levels.iter().rev().find(covers).map_or(self.within, |level| level.length)
+    }
+
+    /// Returns the largest clearance.
+    fn largest(&self) -> f64 {
+        self.levels.iter().map(|level| level.length).fold(self.within, f64::max)
+    }
+}
+
+/// Checks a clearance.
+fn checked_clearance(value: f64) -> Result<f64, AssemblyError> {
+    let is_valid = (0.0..=MAX_MAGNITUDE).contains(&value);
+    if is_valid { Ok(value) } else { Err(AssemblyError::InvalidValue { what: "clearance", value }) }
+}
+
+/// The common part of two parts, and how to separate them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Interference {
+    /// Bounds of the depth, and a translation of the first part that separates the parts.
+    pub depth: SolidDepth,
+    /// Relation, volume and box of the common part.
+    pub common: CommonPart,
+    /// Tolerance with which the parts would not overlap; `None` if no tolerance up to their size suffices.
+    pub least_tolerance: Option<f64>,
+    /// Point inside both parts; if none was found, a point of both, in the world.
+    pub place: DVec3,
+}
+
+/// The distance of two surfaces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// Lower and upper bound of the distance; both are 0 if the surfaces have a common point.
+    pub distance: [f64; 2],
+    /// Nearest points of the first and of the second part, in the world.
+    pub points: [DVec3; 2],
+}
+
+/// How two parts lie to each other.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PairFinding {
+    /// The surfaces cross deeper than the tolerance.
+    Interfering(Box<Interference>),
+    /// One part lies inside the other.
+    Contained {
+        /// Index of the inner part.
+        inner: usize,
+        /// Their common part.
+        interference: Box<Interference>,
+    },
+    /// The parts are at most the tolerance apart, or overlap within it.
+    Touching(Nearest),
+    /// The parts are apart by more than the tolerance.
+    Apart(Nearest),
+}
+
+impl PairFinding {
+    /// Returns the name in answers.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Interfering(_) => "interfering",
+            Self::Contained { .. } => "contained",
+            Self::Touching(_) => "touching",
+            Self::Apart(_) => "apart",
+        }
+    }
+
+    /// Returns the common part of parts that interfere or contain each other; `None` for others.
+    pub fn interference(&self) -> Option<&Interference> {
+        match self {
+            Self::Interfering(found) | Self::Contained { interference: found, .. } => Some(found),
+            Self::Touching(_) | Self::Apart(_) => None,
+        }
+    }
+
+    /// Returns the distance of parts that touch or are apart; `None` for others.
+    pub fn nearest(&self) -> Option<&Nearest> {
+        match self {
+            Self::Touching(found) | Self::Apart(found) => Some(found),
+            Self::Interfering(_) | Self::Contained { .. } => None,
+        }
+    }
+
+    /// Returns the place of the pair: a point of both parts, or else the nearest point of the first part.
+    pub fn place(&self) -> DVec3 {
+        match self {
+            Self::Interfering(found) | Self::Contained { interference: found, .. } => found.place,
+            Self::Touching(found) | Self::Apart(found) => found.points[0],
+        }
+    }
+
+    /// Compares by severity: the deepest interference first, then the deepest contained part, contacts, and the
+    /// nearest pair.
+    fn cmp_severity(&self, other: &Self) -> Ordering {
+        let rank = |finding: &Self| match finding {
+            Self::Interfering(_) => 0,
+            Self::Contained { .. } => 1,
+            Self::Touching(_) => 2,
+            Self::Apart(_) => 3,
+        };
+        let length = |finding: &Self| match (finding.interference(), finding.nearest()) {
+            (Some(found), _) => -found.depth.upper,
+            (None, Some(found)) => found.distance[0],
+            (None, None) => 0.0,
+        };
+        rank(self).cmp(&rank(other)).then(length(self).total_cmp(&length(other)))
+    }
+}
+
+/// A pair of parts with its finding.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct AuditedPair {
+    /// Indices of the parts, the smaller first.
+    pub parts: [usize; 2],
+    /// How the parts lie to each other.
+    pub finding: PairFinding,
+    /// Required clearance.
+    pub clearance: f64,
+    /// Tolerance of the pair: the sum of the lengths by which the bodies are shrunk.
+    pub tolerance: f64,
+    /// Whether the pair interferes, is contained, or is proven to be nearer than the clearance.
+    pub is_violation: bool,
+}
+
+/// Numbers of pairs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct AuditCounts {
+    /// Pairs whose boxes come within the clearance or the tolerance.
+    pub examined: usize,
+    /// Pairs of these boxes that are ignored or glued, and not examined.
+    pub ignored: usize,
+    /// Pairs that interfere.
+    pub interfering: usize,
+    /// Pairs of which one part contains the other.
+    pub contained: usize,
+    /// Pairs that touch.
+    pub touching: usize,
+    /// Pairs that are apart and nearer than the clearance.
+    pub near: usize,
+    /// Violations among all of them.
+    pub violations: usize,
+}
+
+/// Result of [`audit`].
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct Audit {
+    /// Pairs that interfere, touch, or are nearer than their clearance, the worst first.
+    pub pairs: Vec<AuditedPair>,
+    /// Numbers of pairs.
+    pub counts: AuditCounts,
+}
+
+impl Audit {
+    /// Iterates over the pairs that violate their clearance, the worst first.
+    pub fn violations(&self) -> impl Iterator<Item = &AuditedPair> {
+        self.pairs.iter().filter(|pair| pair.is_violation)
+    }
+}
+
+/// Finds all pairs of parts that interfere, touch, or are nearer than their clearance.
+///
+/// # Errors
+/// - [`AssemblyError::Query`]: a query of a pair has no answer.
+/// - [`AssemblyError::TooMany`]: too many pairs are reported.
+/// - [`AssemblyError::Cancelled`].
+pub fn audit(
+    bodies: &Bodies,
+    options: &AuditOptions,
+    watch: Watch,
+) -> Result<Audit, AssemblyError> {
+    let parts = bodies.assembly().parts();
+    let boxes: Vec<Aabb> = parts.iter().map(|part| part.solid().bounds()).collect();
+    let tree = BoxTree::new(boxes.iter().copied());
+    let own = bodies.assembly().pair_fits().map(|(pair, _)| bodies.pair_tolerance(pair));
+    let reach = own.fold(options.largest().max(bodies.fit().tolerance()), f64::max);
+    // Covers the rounding of boxes that are expanded and compared.
+    let slack = 8.0 * f64::EPSILON * (bodies.assembly().coordinate_size() + reach);
+    let tally = watch.start_stage(Stage::Start, parts.len());
+    let reported = AtomicUsize::new(0);
+    let part_pairs = |a: usize| {
+        let mut counts = AuditCounts::default();
+        let mut near = tree.intersecting(&boxes[a].expanded(reach + slack));
+        near.retain(|&b| {
+            let pair = [a, b];
+            let reach = options.clearance(bodies.assembly(), pair).max(bodies.pair_tolerance(pair));
+            b > a && boxes[a].expanded(reach + slack).intersects(&boxes[b])
+        });
+        let candidates = near.len();
+        near.retain(|&b| {
+            bodies.assembly().ignored_contacts(a, b).is_none()
+                && bodies.tolerated_contacts([a, b]) != Some(PairTolerance::Glued)
+        });
+        counts.examined = near.len();
+        counts.ignored = candidates - near.len();
+        let examine = |&b: &usize| {
+            watch.check_cancelled()?;
+            let found = examine_pair(bodies, [a, b], options)?;
+            let is_listed = found.is_violation || !matches!(found.finding, PairFinding::Apart(_));
+            if is_listed && reported.fetch_add(1, Relaxed) >= MOST_NEIGHBOURS {
+                let (what, most) = ("pairs of parts to report", MOST_NEIGHBOURS);
+                return Err(AssemblyError::TooMany { what, most });
+            }
+            Ok(is_listed.then_some(found))
+        };
+        let found: Result<Vec<_>, _> = near.par_iter().map(examine).collect();
+        tally.finish_item()?;
+        Ok((found?.into_iter().flatten().collect::<Vec<_>>(), counts))
+    };
+    let by_part: Result<Vec<_>, AssemblyError> =
+        (0..parts.len()).into_par_iter().map(part_pairs).collect();
+    let mut audit = Audit::default();
+    for (mut pairs, counts) in by_part? {
+        audit.counts.examined += counts.examined;
+        audit.counts.ignored += counts.ignored;
+        audit.pairs.append(&mut pairs);
+    }
+    audit.pairs.sort_by(|x, y| x.finding.cmp_severity(&y.finding).then(x.parts.cmp(&y.parts)));
+    for pair in &audit.pairs {
+        audit.counts.violations += usize::from(pair.is_violation);
+        *match pair.finding {
+            PairFinding::Interfering(_) => &mut audit.counts.interfering,
+            PairFinding::Contained { .. } => &mut audit.counts.contained,
+            PairFinding::Touching(_) => &mut audit.counts.touching,
+            PairFinding::Apart(_) => &mut audit.counts.near,
+        } += 1;
+    }
+    Ok(audit)
+}
+
+/// Examines one pair of parts. A pair that is glued or always ignored has no interference.
+///
+/// # Errors
+/// [`AssemblyError::Query`]: a query has no answer.
+pub fn examine_pair(
+    bodies: &Bodies,
+    pair: [usize; 2],
+    options: &AuditOptions,
+) -> Result<AuditedPair, AssemblyError> {
+    let parts = [pair[0].min(pair[1]), pair[0].max(pair[1])];
+    let finding = pair_finding(bodies, parts, options.volume).map_err(|source| {
+        let [a, b] = parts.map(|part| bodies.assembly().parts()[part].name().to_owned());
+        AssemblyError::Query { a, b, source }
+    })?;
+    let clearance = options.clearance(bodies.assembly(), parts);
+    let is_violation = match &finding {
+        PairFinding::Interfering(_) | PairFinding::Contained { .. } => true,
+        PairFinding::Touching(_) if options.allow_contact => false,
+        PairFinding::Touching(found) | PairFinding::Apart(found) => found.distance[1] < clearance,
+    };
+    let tolerance = bodies.pair_tolerance(parts);
+    Ok(AuditedPair { parts, finding, clearance, tolerance, is_violation })
+}
+
+/// Decides how two parts lie to each other.
+fn pair_finding(
+    bodies: &Bodies,
+    parts: [usize; 2],
+    volume: VolumeOptions,
+) -> Result<PairFinding, QueryError> {
+    let of = parts.map(|k| &bodies.assembly().parts()[k]);
+    let [a, b] = of.map(|part| part.solid().at(Pose::IDENTITY));
+    let pair = Pair::new(a, b)?;
+    let tolerance = bodies.pair_tolerance(parts);
+    let may_cross = bodies.tolerated_contacts(parts) == Some(PairTolerance::Crossing);
+    let overlaps = bodies.overlaps(parts[0], parts[1]);
+    // The distance of the surfaces is not needed for bodies that interfere.
+    let surfaces = if overlaps && !may_cross { None } else { Some(pair.surface_distance()?) };
+    let is_inside = |found: &SurfaceDistance| {
+        matches!(found.place, Some(Overlap::MovingInside(_) | Overlap::FixedInside(_)))
+    };
+    if !may_cross && surfaces.as_ref().is_none_or(is_inside) {
+        let depth = pair.depth()?;
+        // Open surfaces have no depth.
+        if depth.upper > tolerance || overlaps && of.iter().any(|part| part.is_surface()) {
+            let common = pair.common_part(volume)?;
+            let inner = match common.relation {
+                Relation::MovingContained => Some(0),
+                Relation::FixedContained => Some(1),
+                _ => None,
+            };
+            let place = common.point.map_or_else(|| common_point(&pair, inner), Ok)?;
+            let least_tolerance = bodies.least_tolerance(parts[0], parts[1]).flatten();
+            let found = Interference { depth, common, least_tolerance, place };
+            let interference = Box::new(found);
+            return Ok(match inner {
+                Some(side) => PairFinding::Contained { inner: parts[side], interference },
+                None => PairFinding::Interfering(interference),
+            });
+        }
+    }
+    let found = surfaces.map_or_else(|| pair.surface_distance(), Ok)?;
+    let nearest =
+        Nearest { distance: [found.lower, found.upper], points: [found.on_moving, found.on_fixed] };
+    let touches = found.place.is_some() || found.lower <= tolerance;
+    Ok(if touches { PairFinding::Touching(nearest) } else { PairFinding::Apart(nearest) })
+}
+
+/// Returns a point of two bodies: of the surface of the inner one, or else of both surfaces.
+fn common_point(pair: &Pair<Solid>, inner: Option<usize>) -> Result<DVec3, QueryError> {
+    let found = pair.surface_distance()?;
+    Ok(if inner == Some(1) { found.on_fixed } else { found.on_moving })
+}

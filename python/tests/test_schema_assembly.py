@@ -45,3 +45,19 @@ def test_surfaces_and_overlaps(cli: Path, tmp_path: Path) -> None:
     tray = found["parts"][1]
     assert "shells" in tray and tray["volume"] is None and tray["volume_bounds"] is None
     conform("assembly", found)
+
+
+@pytest.mark.parametrize(
+    "words", [[], ["--within", "0.5"], ["--within", "bolt*,cover=3", "--allow-contact"]]
+)
+def test_audits(cli: Path, tmp_path: Path, words: Sequence[str]) -> None:
+    code = 1 if words else 0
+    found = ask(cli, ["audit", str(DATA / "gearbox_small"), *words], code)
+    assert found["parts"] and found["counts"]["examined"] > 0
+    conform("audit", found)
+    (tmp_path / "tray.off").write_text(TRAY)
+    (tmp_path / "bolt.stl").write_bytes((DATA / "bolt.stl").read_bytes())
+    (tmp_path / "again.stl").write_bytes((DATA / "bolt.stl").read_bytes())
+    found = ask(cli, ["audit", str(tmp_path), *words[:2]], 1)
+    assert found["pairs"][0]["finding"] == "interfering"
+    conform("audit", found)

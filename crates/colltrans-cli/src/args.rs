@@ -23,12 +23,14 @@ use colltrans_mesh::body::BodyOptions;
 
 use crate::failure::{Code, Failure};
 use crate::inputs::is_obstacle_list;
-pub(crate) use assembly::{AssemblyArguments, ConstraintArguments, RoleArguments};
+pub(crate) use assembly::{
+    AssemblyArguments, AuditArguments, ConstraintArguments, InputArguments, RoleArguments,
+};
 pub(crate) use directions::DirectionsArguments;
 use help::{
-    ASSEMBLY_NOTES, BATCH_FORMAT, CAST_NOTES, CLEARANCE_NOTES, DEPTH_NOTES, DIRECTIONS_NOTES,
-    DISTANCE_NOTES, INFO_NOTES, MOTION_NOTES, PATH_NOTES, REPLAY_NOTES, SEE_ALL, SETUP_NOTES,
-    VERIFY_NOTES, WITHIN_NOTES, fit_to_terminal,
+    ASSEMBLY_NOTES, AUDIT_NOTES, BATCH_FORMAT, CAST_NOTES, CLEARANCE_NOTES, DEPTH_NOTES,
+    DIRECTIONS_NOTES, DISTANCE_NOTES, INFO_NOTES, MOTION_NOTES, PATH_NOTES, REPLAY_NOTES, SEE_ALL,
+    SETUP_NOTES, VERIFY_NOTES, WITHIN_NOTES, fit_to_terminal,
 };
 pub(crate) use help::{files_topic, json_topic};
 pub(crate) use layout::compact_command;
@@ -75,6 +77,12 @@ pub(crate) enum Command {
     /// the least tolerance at which they would not overlap.
     #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[DEPTH_NOTES]))]
     Depth(Box<PlacedArguments>),
+    /// List the pairs of parts of an assembly that interfere or are too near
+    ///
+    /// Every pair is examined. The bounds of distances, depths and volumes are proven. Exit code 1 if a pair interferes or
+    /// is nearer than its clearance, 0 if none is.
+    #[command(visible_alias = "clash", after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[AUDIT_NOTES]))]
+    Audit(Box<AuditArguments>),
     /// Compute how far a mesh can move before another blocks it
     ///
     /// Two convex meshes are convex bodies. Meshes that are not convex, several meshes on one side, and

@@ -5,12 +5,15 @@
 //! - `colltrans_assembly` computes overlaps, contacts, directions, the blocking matrix, the plan and maps.
 //! - [`free`] computes all removal directions of the requested groups.
 //! - [`output`] writes text, JSON or files.
+//!
+//! [`audit`](crate::audit) reads its sources by [`read_assembly`].
 
 mod constraints;
 mod free;
-mod output;
+pub(crate) mod output;
 mod step;
 
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 use colltrans::glam::DVec3;
@@ -29,14 +32,45 @@ use colltrans_assembly_io::read::{self, Geometry, ReadOptions};
 use colltrans_mesh::body::BodyError;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::args::{AssemblyArguments, direction};
+use crate::args::{AssemblyArguments, InputArguments, RoleArguments, direction};
 use crate::failure::{Code, Failure};
 
 pub(crate) fn run(arguments: &AssemblyArguments) -> Result<(), Failure> {
-    let Some(threads) = arguments.threads else { return plan_in_pool(arguments) };
+    in_thread_pool(arguments.threads, || plan_in_pool(arguments))
+}
+
+/// Runs work on a number of threads.
+///
+/// # Errors
+/// The threads cannot be started, or the work fails.
+pub(crate) fn in_thread_pool(
+    threads: Option<NonZeroUsize>,
+    work: impl FnOnce() -> Result<(), Failure> + Send,
+) -> Result<(), Failure> {
+    let Some(threads) = threads else { return work() };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build();
     let pool = pool.map_err(|e| Failure::new(Code::Usage, format!("--threads: {e}")))?;
-    pool.install(|| plan_in_pool(arguments))
+    pool.install(work)
+}
+
+/// Returns a bar for [`show_stages`].
+pub(crate) fn stage_bar() -> ProgressBar {
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{msg:>9} {wide_bar} {pos}/{len}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// Returns the observer that shows the progress of each stage by a bar.
+pub(crate) fn show_stages(bar: &ProgressBar) -> impl Fn(Stage, usize, usize) + Sync {
+    |stage: Stage, done: usize, total: usize| {
+        if done.is_multiple_of(16) || done == total {
+            bar.set_message(stage.name());
+            bar.set_length(total as u64);
+            bar.set_position(done as u64);
+        }
+    }
 }
 
 /// Plans the assembly in the current thread pool, and writes the answer.
@@ -46,7 +80,8 @@ fn plan_in_pool(arguments: &AssemblyArguments) -> Result<(), Failure> {
         let why = "--only needs directions; give --direction, --directions or --samples";
         return Err(Failure::new(Code::Usage, why));
     }
-    let assembly = read_assembly(arguments)?;
+    let assembly = read_assembly(&arguments.source, &arguments.input, &arguments.roles)?;
+    let assembly = constraints::with_constraints(assembly, &arguments.asked)?;
     let mapped_groups = named_groups(&arguments.map, &assembly)?;
     let removed_groups = named_groups(&arguments.free, &assembly)?;
     let wanted = assembly.parts_named(&arguments.asked.remove)?;
@@ -57,24 +92,15 @@ fn plan_in_pool(arguments: &AssemblyArguments) -> Result<(), Failure> {
         (None, Some(length)) => Fit::MinGap(length),
         (None, None) => Fit::default_for(&assembly),
     };
-    let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{msg:>9} {wide_bar} {pos}/{len}") {
-        bar.set_style(style);
-    }
-    let progress = |stage: Stage, done: usize, total: usize| {
-        if done.is_multiple_of(16) || done == total {
-            bar.set_message(stage.name());
-            bar.set_length(total as u64);
-            bar.set_position(done as u64);
-        }
-    };
+    let bar = stage_bar();
+    let progress = show_stages(&bar);
     let watch = Watch::default().with_progress(&progress);
     let question = plan_question(arguments, &sampled, wanted);
     let given_bodies = Bodies::new(&assembly, fit)?;
     let mut found = question.analyse(&given_bodies, watch)?;
     let suggested;
     let suggested_bodies;
-    if arguments.roles.auto && !found.suggestions.is_empty() && !found.plan.interlocked.is_empty() {
+    if arguments.auto && !found.suggestions.is_empty() && !found.plan.interlocked.is_empty() {
         suggested = suggest::apply_suggestions(assembly.clone(), &found.suggestions)?;
         suggested_bodies = Bodies::new(&suggested, fit)?;
         found = question.analyse(&suggested_bodies, watch)?;
@@ -128,8 +154,15 @@ fn start_overlap(arguments: &AssemblyArguments) -> StartOverlap {
     if arguments.ignore_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse }
 }
 
-/// Reads the source, and applies the roles and constraints of the command line.
-fn read_assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
+/// Reads a source, and applies the roles of the command line.
+///
+/// # Errors
+/// The source cannot be read, or an option has an unknown part or a wrong form.
+pub(crate) fn read_assembly(
+    source: &Path,
+    arguments: &InputArguments,
+    roles: &RoleArguments,
+) -> Result<Assembly, Failure> {
     let usage = |text: String| Failure::new(Code::Usage, text);
     let geometry = if arguments.visual { Geometry::Visual } else { Geometry::Collision };
     let mut options = ReadOptions::default()
@@ -155,20 +188,18 @@ fn read_assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
         options.scales.insert(name.to_owned(), factor);
     }
     let refused = |e: ReadError| Failure::new(Code::Input, format!("{e}{}", read_error_hint(&e)));
-    let source = &arguments.source;
     let assembly = if step::is_step(source) {
         let glb = step::convert_to_glb(source, arguments.chord)?;
         let read = read::glb_with(source, &glb, &options).map_err(refused)?;
-        read.with_files(vec![source.clone()])
+        read.with_files(vec![source.to_owned()])
     } else {
         read::read(source, &options).map_err(refused)?
     };
-    let ignore = constraints::name_pairs("--ignore", &arguments.ignore)?;
-    let always = constraints::name_pairs("--ignore-always", &arguments.ignore_always)?;
+    let ignore = constraints::name_pairs("--ignore", &roles.ignore)?;
+    let always = constraints::name_pairs("--ignore-always", &roles.ignore_always)?;
     let assembly = assembly.with_ignored(&ignore, Ignored::Overlap)?;
     let assembly = assembly.with_ignored(&always, Ignored::Always)?;
-    let assembly = constraints::with_roles(assembly, &arguments.roles)?;
-    constraints::with_constraints(assembly, &arguments.asked)
+    constraints::with_roles(assembly, roles)
 }
 
 /// Returns the option of `assembly` and `path` that avoids an error; empty if there is none.
@@ -280,7 +311,9 @@ impl From<AssemblyError> for Failure {
             | AssemblyError::FixedAndRemoved { .. }
             | AssemblyError::InvalidRemoval { .. }
             | AssemblyError::InvalidAngle { .. } => Code::Usage,
-            AssemblyError::Replay { .. } | AssemblyError::Cancelled => Code::Query,
+            AssemblyError::Replay { .. }
+            | AssemblyError::Query { .. }
+            | AssemblyError::Cancelled => Code::Query,
             _ => Code::Input,
         };
         Self::new(code, error.to_string())

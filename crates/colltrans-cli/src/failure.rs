@@ -10,7 +10,7 @@ use crate::terminal::{escape_json, escape_line, escape_lines};
 /// The exit codes other than 0, as `colltrans help files` documents them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Code {
-    /// Some lines of a batch have no answer.
+    /// Some lines of a batch have no answer, or pairs of an audit violate their clearance.
     Lines = 1,
     /// The command line is wrong.
     Usage = 2,

@@ -8,7 +8,8 @@
 //! - [`driver`] prints the answer as JSON ([`record`]) or as text ([`report`], [`numbers`]), then writes its
 //!   proof and its [`picture`]. [`case`] saves a query that does not converge.
 //!
-//! Other commands: [`batch`] answers every line of a file, [`assembly`] plans for many parts, [`info`]
+//! Other commands: [`batch`] answers every line of a file, [`assembly`] plans for many parts, [`audit`] finds those that
+//! are too near, [`info`]
 //! describes a mesh, [`replay`] answers a saved query, [`verify`] checks saved proofs, and [`setup`] installs man pages and completions.
 //!
 //! Files and streams: [`inputs`] reads text and rejects outputs that would overwrite an input. [`outputs`]
@@ -17,6 +18,7 @@
 
 mod args;
 mod assembly;
+mod audit;
 mod batch;
 mod body;
 mod case;
@@ -78,6 +80,7 @@ fn main() -> ExitCode {
         Command::Path(arguments) => path::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Assembly(arguments) => assembly::run(&arguments),
+        Command::Audit(arguments) => audit::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),

@@ -1,4 +1,4 @@
-//! The command line of `colltrans assembly`.
+//! The command lines of `colltrans assembly` and `colltrans audit`.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -64,43 +64,105 @@ pub(crate) struct AssemblyArguments {
     pub(crate) threads: Option<NonZeroUsize>,
     #[command(flatten)]
     pub(crate) asked: ConstraintArguments,
+    /// If parts stay interlocked: plan again with the suggested roles and tolerances
+    #[arg(long, help_heading = CONTACTS, conflicts_with = "keep_apart")]
+    pub(crate) auto: bool,
     #[command(flatten)]
     pub(crate) roles: RoleArguments,
     /// Let parts that overlap at the start pass; later contacts block
     #[arg(long, help_heading = CONTACTS, hide_short_help = true)]
     pub(crate) ignore_overlaps: bool,
-    /// Let two parts that overlap at the start pass; later contacts block
-    #[arg(long, value_name = "A,B", help_heading = CONTACTS, hide_short_help = true)]
-    pub(crate) ignore: Vec<String>,
-    /// Two parts that never block each other
-    #[arg(long, value_name = "A,B", help_heading = CONTACTS, hide_short_help = true)]
-    pub(crate) ignore_always: Vec<String>,
+    #[command(flatten)]
+    pub(crate) input: InputArguments,
+}
+
+/// Arguments of `colltrans audit`.
+#[derive(Debug, Args)]
+pub(crate) struct AuditArguments {
+    /// A folder of meshes, a manifest, a .urdf, .glb, .gltf, .3mf or .step file, or one mesh
+    pub(crate) source: PathBuf,
+    /// Required clearance of all pairs, or between two parts or groups; may be repeated [default: 0]
+    #[arg(long, value_name = "L|A,B=L", allow_hyphen_values = true, value_parser = clearance)]
+    pub(crate) within: Vec<Clearance>,
+    /// Let parts touch: list only interferences, and gaps below the clearance
+    #[arg(long)]
+    pub(crate) allow_contact: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write all pairs as a table
+    #[arg(long, value_name = "OUT.csv")]
+    pub(crate) csv: Option<PathBuf>,
+    /// List at most N pairs as text
+    #[arg(long, value_name = "N")]
+    pub(crate) limit: Option<usize>,
+    /// Permitted overlap: chord errors of curved fits, press fits [default: precision of the files]
+    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) tolerance: Option<f64>,
+    /// Number of threads [default: all cores]; the answer is the same
+    #[arg(long, value_name = "N", value_parser = threads, hide_short_help = true)]
+    pub(crate) threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    pub(crate) roles: RoleArguments,
+    #[command(flatten)]
+    pub(crate) input: InputArguments,
+}
+
+/// A required clearance of the command line.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Clearance {
+    /// Patterns of two groups of parts; `None` for all pairs.
+    pub(crate) groups: Option<[String; 2]>,
+    pub(crate) length: f64,
+}
+
+/// Parses a clearance: `L`, or `A,B=L` for the pairs of two groups. Names may contain `=`.
+fn clearance(text: &str) -> Result<Clearance, String> {
+    let Some((names, value)) = text.rsplit_once('=') else {
+        return Ok(Clearance { groups: None, length: length(text)? });
+    };
+    let groups = names.split_once(',').map(|(a, b)| [a, b].map(|name| name.trim().to_owned()));
+    let groups = groups.filter(|names| names.iter().all(|name| !name.is_empty()));
+    let groups = groups.ok_or("expected a length, or two names and a length, A,B=L")?;
+    Ok(Clearance { groups: Some(groups), length: length(value)? })
+}
+
+/// How sources of assemblies are read.
+#[derive(Debug, Args)]
+#[command(next_help_heading = INPUT)]
+pub(crate) struct InputArguments {
     /// STEP: distance of facets from the surfaces, about, in millimetres
-    #[arg(long, value_name = "L", default_value_t = 0.05, allow_hyphen_values = true, value_parser = factor, help_heading = INPUT, hide_short_help = true)]
+    #[arg(long, value_name = "L", default_value_t = 0.05, allow_hyphen_values = true, value_parser = factor, hide_short_help = true)]
     pub(crate) chord: f64,
     /// Parts of a file with several bodies: auto, never, names or bodies
-    #[arg(long, value_name = "WHICH", default_value = "auto", hide_default_value = true, help_heading = INPUT, hide_short_help = true)]
+    #[arg(
+        long,
+        value_name = "WHICH",
+        default_value = "auto",
+        hide_default_value = true,
+        hide_short_help = true
+    )]
     pub(crate) split: Split,
     /// Factor of a part whose file has another unit
-    #[arg(long, value_name = "PART=FACTOR", help_heading = INPUT, hide_short_help = true)]
+    #[arg(long, value_name = "PART=FACTOR", hide_short_help = true)]
     pub(crate) scale: Vec<String>,
     /// URDF: position of a joint, in radians or metres
-    #[arg(long, value_name = "NAME=VALUE", help_heading = INPUT, hide_short_help = true)]
+    #[arg(long, value_name = "NAME=VALUE", hide_short_help = true)]
     pub(crate) joint: Vec<String>,
     /// URDF: read the visual geometry instead of the collision geometry
-    #[arg(long, help_heading = INPUT, hide_short_help = true)]
+    #[arg(long, hide_short_help = true)]
     pub(crate) visual: bool,
     /// URDF: folder in which `package://` references are searched
-    #[arg(long, value_name = "DIR", help_heading = INPUT, hide_short_help = true)]
+    #[arg(long, value_name = "DIR", hide_short_help = true)]
     pub(crate) package: Vec<PathBuf>,
     /// Read referenced files outside of the folders; only for trusted sources
-    #[arg(long, help_heading = INPUT, hide_short_help = true)]
+    #[arg(long, hide_short_help = true)]
     pub(crate) allow_outside: bool,
     /// Skip missing meshes and what a manifest says about them, with a note
-    #[arg(long, help_heading = INPUT, hide_short_help = true)]
+    #[arg(long, hide_short_help = true)]
     pub(crate) skip_missing: bool,
     /// Reject meshes that need repair (doubled or reversed facets, near vertices)
-    #[arg(long, help_heading = INPUT, hide_short_help = true)]
+    #[arg(long, hide_short_help = true)]
     pub(crate) as_is: bool,
 }
 
@@ -140,9 +202,6 @@ pub(crate) struct ConstraintArguments {
 #[derive(Debug, Args)]
 #[command(next_help_heading = CONTACTS)]
 pub(crate) struct RoleArguments {
-    /// If parts stay interlocked: plan again with the suggested roles and tolerances
-    #[arg(long, conflicts_with = "keep_apart")]
-    pub(crate) auto: bool,
     /// Press fit: permitted overlap of this pair [default: its overlap at the start]
     #[arg(long, value_name = "A,B[=L]", hide_short_help = true)]
     pub(crate) press: Vec<String>,
@@ -159,6 +218,27 @@ pub(crate) struct RoleArguments {
     #[arg(long, value_name = "A,B", hide_short_help = true)]
     pub(crate) glued: Vec<String>,
     /// Tolerance of one pair, instead of --tolerance
-    #[arg(long, value_name = "A,B=L", hide_short_help = true)]
+    #[arg(long, visible_alias = "fit", value_name = "A,B=L", hide_short_help = true)]
     pub(crate) pair: Vec<String>,
+    /// Two parts whose overlap at the start is ignored; later contacts block
+    #[arg(long, value_name = "A,B", hide_short_help = true)]
+    pub(crate) ignore: Vec<String>,
+    /// Two parts that never block each other
+    #[arg(long, value_name = "A,B", hide_short_help = true)]
+    pub(crate) ignore_always: Vec<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clearances_have_a_length_and_perhaps_two_groups() {
+        assert_eq!(clearance("0.5"), Ok(Clearance { groups: None, length: 0.5 }));
+        let groups = Some(["pipe*".to_owned(), "a=b".to_owned()]);
+        assert_eq!(clearance("pipe*, a=b=50"), Ok(Clearance { groups, length: 50.0 }));
+        for bad in ["", "-1", "inf", "nan", "a=1", "a,=1", ",b=1", "a,b=", "a,b=x", "a,b"] {
+            assert!(clearance(bad).is_err(), "{bad}");
+        }
+    }
 }

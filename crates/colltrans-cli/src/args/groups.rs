@@ -16,7 +16,7 @@ struct Group {
 const GROUPS: [Group; 4] = [
     Group {
         question: "Where bodies are",
-        commands: &["info", "distance", "within", "depth"],
+        commands: &["info", "distance", "within", "depth", "audit"],
         example: "colltrans distance left.obj right.obj",
     },
     Group {

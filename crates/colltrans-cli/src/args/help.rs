@@ -198,7 +198,8 @@ const MANIFEST: &str = r#"Manifest of an assembly, in TOML (JSON has the same fi
 const EXIT_CODES: &str = "\
 Exit codes:
   0  answered (contact, separated, free, blocked, overlapping, closer, farther are all answers)
-  1  batch, --directions: some lines have no answer; the results state which and why
+  1  batch, --directions: some lines have no answer; the results state which and why; audit: a pair
+     interferes or is nearer than its clearance
   2  the command line is wrong
   3  an input file cannot be read, a body is not acceptable, or an output would overwrite an input
   4  no certified answer (please report the case); an undecided motion or path states how long it is
@@ -542,6 +543,34 @@ Examples:
 
 `colltrans help files`: manifest, formats, units, exit codes; `colltrans help json`: fields.";
 
+pub(super) const AUDIT_NOTES: &str = "\
+Findings, the worst first:
+  interfering  the parts overlap by more than the tolerance; `depth` bounds the shortest translation
+               that separates them, `translation` of the first part is the shortest one found
+  contained    one part lies inside the other
+  touching     they are at most the tolerance apart, or overlap within it, or their role permits it
+  apart        they are nearer than the clearance
+Text lists the violations: interfering (`by` the tolerance that would suffice), contained, or nearer
+than the clearance. Parts that touch
+violate a clearance above 0, except with --allow-contact. Pairs with a role or a tolerance of their
+own have no clearance. Pairs that are ignored or glued are left out.
+
+With --json one object:
+  parts unit tolerance notes   as of `assembly`; within is the clearance
+  counts  {\"examined\", \"ignored\", \"interfering\", \"contained\", \"touching\", \"near\", \"violations\"}
+  pairs   [{\"parts\": [a, b], \"finding\", \"violation\", \"clearance\", \"tolerance\", \"role\"}] with
+          \"distance\", \"points\" (of touching, apart) or \"depth\", \"translation\", \"volume\", \"box\",
+          \"least_tolerance\", \"point\", \"inner\" (of contained). Lengths and volumes are proven [lower, upper]
+
+Examples:
+  Is anything nearer than 0.5, or interfering? Bolted faces may touch.
+    colltrans audit gearbox/ --within 0.5 --allow-contact
+  Pipes keep 50 from beams; the bush is pressed in by at most 0.04:
+    colltrans audit plant.glb --within 2 --within 'pipe*,beam*=50' --fit bush,body=0.04 \\
+      --csv clashes.csv
+
+`colltrans help files`: sources, manifest, units, exit codes.";
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -569,6 +598,7 @@ mod tests {
             JSON_FIELDS,
             JSON_ASSEMBLY,
             ASSEMBLY_NOTES,
+            AUDIT_NOTES,
             VERIFY_NOTES,
             REPLAY_NOTES,
             SETUP_NOTES,

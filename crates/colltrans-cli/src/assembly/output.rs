@@ -5,14 +5,16 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use colltrans::glam::DVec3;
+use colltrans_assembly::audit::{AuditOptions, examine_pair};
 use colltrans_assembly::hints::find_hints;
 use colltrans_assembly::plan::{Plan, precedence_graph};
 use colltrans_assembly::report::{facts, glb, html};
-use colltrans_assembly::{Analysis, Assembly, Fit};
+use colltrans_assembly::{Analysis, Assembly, Bodies, Fit};
 use colltrans_assembly::{map, record, suggest};
 
 use super::free::GroupRemoval;
 use crate::args::AssemblyArguments;
+use crate::audit::finding_text;
 use crate::directions;
 use crate::failure::{Failure, note, print, print_json};
 use crate::inputs::check_output_path;
@@ -129,11 +131,10 @@ fn proof_names<'a>(parts: impl IntoIterator<Item = &'a String>) -> Vec<String> {
     parts.into_iter().map(|name| format!("free-{}.json", names.unique_name(name))).collect()
 }
 
-/// Returns the answer as text.
-fn summary_text(findings: &Analysis) -> String {
-    let assembly = findings.bodies.assembly();
-    let names = |parts: &[usize]| escape_line(name_list(&assembly.part_names(parts)));
-    let fit = match findings.bodies.fit() {
+/// Returns the first lines of an answer: the number of parts, the tolerance, and the defects of parts.
+pub(crate) fn head_text(bodies: &Bodies) -> String {
+    let parts = bodies.assembly().parts();
+    let fit = match bodies.fit() {
         Fit::Tolerance(length) => format!("tolerance {}", length_up(length)),
         Fit::Chords { largest, .. } => {
             let largest = length_up(largest);
@@ -141,12 +142,20 @@ fn summary_text(findings: &Analysis) -> String {
         }
         Fit::MinGap(length) => format!("minimum gap {}", length_down(length)),
     };
-    let mut text = format!("{}, {fit}\n", count_text(assembly.parts().len(), "part", "parts"));
-    for (k, p) in assembly.parts().iter().enumerate() {
-        for defect in p.defects().iter().chain(&findings.bodies.shrink_defects(k)) {
+    let mut text = format!("{}, {fit}\n", count_text(parts.len(), "part", "parts"));
+    for (k, p) in parts.iter().enumerate() {
+        for defect in p.defects().iter().chain(&bodies.shrink_defects(k)) {
             let _ = writeln!(text, "  {}: {}", escape_line(p.name()), escape_line(defect));
         }
     }
+    text
+}
+
+/// Returns the answer as text.
+fn summary_text(findings: &Analysis) -> String {
+    let assembly = findings.bodies.assembly();
+    let names = |parts: &[usize]| escape_line(name_list(&assembly.part_names(parts)));
+    let mut text = head_text(findings.bodies);
     for hint in find_hints(findings.bodies, &findings.start) {
         let _ = writeln!(text, "  {}", escape_line(hint.description));
     }
@@ -317,7 +326,10 @@ fn push_overlaps(text: &mut String, findings: &Analysis) {
             }
             (Some(depth), _) => format!(" by {}", length_up(depth)),
         };
-        let _ = writeln!(text, "  {a}, {b}{depth}");
+        let found = examine_pair(findings.bodies, o.parts, &AuditOptions::default());
+        let finding = found
+            .map_or_else(escape_line, |found| finding_text(findings.bodies.assembly(), &found));
+        let _ = writeln!(text, "  {a}, {b}{depth}: {finding}");
     }
     if remaining.is_empty() && !findings.suggestions.is_empty() {
         text.push_str("possible reasons\n");

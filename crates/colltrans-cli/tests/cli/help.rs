@@ -3,11 +3,12 @@
 use crate::support::{answered, folder};
 
 /// Subcommands in the order of `colltrans --help`.
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     "info",
     "distance",
     "within",
     "depth",
+    "audit",
     "clearance",
     "cast",
     "motion",
@@ -48,6 +49,6 @@ fn help_has_at_most_90_lines_and_short_help_at_most_40() {
 fn overview_lists_each_command_in_order() {
     let overview = answered(folder().path(), &["--help"]);
     let place = |command: &str| overview.find(&format!("\n  {command} "));
-    let places: Vec<_> = COMMANDS[..16].iter().map(|command| place(command)).collect();
+    let places: Vec<_> = COMMANDS[..17].iter().map(|command| place(command)).collect();
     assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{overview}");
 }

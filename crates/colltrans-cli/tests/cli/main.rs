@@ -1,6 +1,7 @@
 //! Runs the program as a user does.
 
 mod assembly;
+mod audit;
 mod batch;
 mod cast;
 mod clearance;

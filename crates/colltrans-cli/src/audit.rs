@@ -1,0 +1,124 @@
+//! `colltrans audit`: the pairs of parts of an assembly that interfere or are too near.
+//!
+//! Sources, roles and tolerances are those of [`assembly`](crate::assembly). `colltrans_assembly::audit` finds the pairs.
+
+use std::fmt::Write as _;
+
+use colltrans_assembly::audit::{
+    Audit, AuditCounts, AuditOptions, AuditedPair, PairFinding, audit, audit_csv, audit_json,
+};
+use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
+
+use crate::args::AuditArguments;
+use crate::assembly::output::head_text;
+use crate::assembly::{in_thread_pool, read_assembly, show_stages, stage_bar};
+use crate::failure::{Code, Failure, note, print, print_json};
+use crate::inputs::check_output_path;
+use crate::numbers::{count_text, interval, length_down, length_up, point, smaller_extent};
+use crate::outputs;
+use crate::terminal::escape_line;
+
+pub(crate) fn run(arguments: &AuditArguments) -> Result<(), Failure> {
+    in_thread_pool(arguments.threads, || audit_in_pool(arguments))
+}
+
+/// Audits the assembly in the current thread pool, and writes the answer.
+fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
+    let assembly = read_assembly(&arguments.source, &arguments.input, &arguments.roles)?;
+    let options = audit_options(arguments, &assembly)?;
+    if let Some(csv) = &arguments.csv {
+        let inputs: Vec<_> = assembly.files().iter().map(std::path::PathBuf::as_path).collect();
+        check_output_path(csv, &inputs, "give the table another name")?;
+    }
+    let fit = arguments.tolerance.map_or_else(|| Fit::default_for(&assembly), Fit::Tolerance);
+    let bodies = Bodies::new(&assembly, fit)?;
+    let bar = stage_bar();
+    let progress = show_stages(&bar);
+    let found = audit(&bodies, &options, Watch::default().with_progress(&progress))?;
+    bar.finish_and_clear();
+    for text in assembly.notes() {
+        note(text);
+    }
+    if let Some(csv) = &arguments.csv {
+        outputs::write(csv, audit_csv(&assembly, &found).as_bytes())?;
+    }
+    if arguments.json {
+        print_json(&format!("{}\n", audit_json(&bodies, &options, &found)))?;
+    } else {
+        print(&audit_text(&bodies, arguments, &found))?;
+    }
+    match found.counts.violations {
+        0 => Ok(()),
+        count => {
+            let pairs = count_text(count, "pair interferes or is", "pairs interfere or are");
+            Err(Failure::new(Code::Lines, format!("{pairs} nearer than the clearance")))
+        }
+    }
+}
+
+/// Returns the required clearances of the command line.
+fn audit_options(arguments: &AuditArguments, assembly: &Assembly) -> Result<AuditOptions, Failure> {
+    let mut options = AuditOptions::default().with_allow_contact(arguments.allow_contact);
+    for given in &arguments.within {
+        options = match &given.groups {
+            None => options.with_within(given.length)?,
+            Some([a, b]) => options.with_level(assembly, [&[a], &[b]], given.length)?,
+        };
+    }
+    Ok(options)
+}
+
+/// Returns the answer as text: one line for each violation, and the numbers of pairs.
+fn audit_text(bodies: &Bodies, arguments: &AuditArguments, found: &Audit) -> String {
+    let assembly = bodies.assembly();
+    let mut text = head_text(bodies);
+    for given in &arguments.within {
+        let groups = given.groups.as_ref().map(|[a, b]| format!(" of {a} and {b}"));
+        let groups = escape_line(groups.unwrap_or_default());
+        let _ = writeln!(text, "clearance{groups}: {}", length_down(given.length));
+    }
+    let limit = arguments.limit.unwrap_or(usize::MAX);
+    for pair in found.violations().take(limit) {
+        let [a, b] = pair.parts.map(|part| escape_line(assembly.parts()[part].name()));
+        let tolerance = pair.finding.interference().and_then(|found| found.least_tolerance);
+        let by = tolerance.map_or_else(String::new, |length| format!(" by {}", length_up(length)));
+        let _ = writeln!(text, "  {a}, {b}{by}: {}", finding_text(assembly, pair));
+    }
+    if let more @ 1.. = found.counts.violations.saturating_sub(limit) {
+        let _ = writeln!(text, "  and {more} more");
+    }
+    let AuditCounts { examined, ignored, interfering, contained, touching, near, .. } =
+        found.counts;
+    let _ = writeln!(
+        text,
+        "{} examined: {interfering} interfering, {contained} contained, {touching} touching, {near} nearer than the \
+         clearance",
+        count_text(examined, "pair", "pairs"),
+    );
+    if ignored > 0 {
+        let _ = writeln!(text, "{} ignored", count_text(ignored, "pair", "pairs"));
+    }
+    text
+}
+
+/// Describes how two parts lie to each other.
+pub(crate) fn finding_text(assembly: &Assembly, pair: &AuditedPair) -> String {
+    let parts = pair.parts.map(|part| &assembly.parts()[part]);
+    let extent = smaller_extent(parts.map(|part| part.solid().bounds()));
+    let mut text = match &pair.finding {
+        PairFinding::Contained { inner, .. } => {
+            format!("{} contained", escape_line(assembly.parts()[*inner].name()))
+        }
+        PairFinding::Apart(found) => format!("{} apart", interval(found.distance)),
+        finding => finding.name().to_owned(),
+    };
+    if let Some(found) = pair.finding.interference().filter(|found| found.depth.upper > 0.0) {
+        let [depth, volume] = [found.depth.bounds(), found.common.volume].map(interval);
+        let _ = write!(text, ", depth {depth}, volume {volume}");
+    }
+    let _ = write!(text, ", at {}", point(pair.finding.place(), 0.0, extent));
+    if let PairFinding::Apart(found) = &pair.finding {
+        let _ = write!(text, " and {}", point(found.points[1], 0.0, extent));
+    }
+    text
+}

@@ -1,0 +1,184 @@
+//! `colltrans audit`: exit codes, text, JSON, tables and wrong arguments.
+
+use std::path::Path;
+use std::process::Output;
+
+use colltrans_testkit::TemporaryFolder;
+use serde_json::Value;
+
+use crate::support::{self, data, folder, json, stderr, stdout};
+
+/// Returns a folder with cubes: `high` runs 0.25 into `low`, `grain` lies inside `low`, `near` is 0.5 from `low`, and
+/// `on` stands on `near`.
+fn cubes() -> TemporaryFolder {
+    let folder = folder();
+    let mut text = String::from("unit = 'mm'\n");
+    for (name, at, scale) in [
+        ("low", [0.0, 0.0, 0.0], 1.0),
+        ("high", [0.0, 0.0, 0.75], 1.0),
+        ("grain", [0.25, 0.25, 0.25], 0.25),
+        ("near", [1.5, 0.0, 0.0], 1.0),
+        ("on", [1.5, 0.0, 1.0], 1.0),
+    ] {
+        text += &format!(
+            "[[part]]\nfile = 'cube.off'\nname = '{name}'\ntranslation = {at:?}\nscale = {scale}\n"
+        );
+    }
+    std::fs::write(folder.path().join("cubes.toml"), text).unwrap();
+    folder
+}
+
+fn of_audit<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+    [&["audit"][..], arguments].concat()
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    support::run(folder, &of_audit(arguments))
+}
+
+fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
+    support::refused(folder, &of_audit(arguments), code, words);
+}
+
+/// Runs an audit, asserts its exit code, and returns its text and its messages.
+fn text(folder: &Path, arguments: &[&str], code: i32) -> [String; 2] {
+    let output = run(folder, arguments);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", stderr(&output));
+    [stdout(&output), stderr(&output)]
+}
+
+#[test]
+fn violations_are_listed_worst_first_with_exit_code_1() {
+    let folder = cubes();
+    let [found, message] = text(folder.path(), &["cubes.toml", "--within", "0.6"], 1);
+    let lines: Vec<&str> = found.lines().filter(|line| line.starts_with("  ")).collect();
+    let expected = [
+        "  low, high by 0.250001: interfering, depth 0.25",
+        "  low, grain: grain contained, depth 0.5",
+        "  near, on: touching, at ",
+        "  high, grain: 0.25",
+        "  low, near: 0.5",
+        "  low, on: 0.5",
+        "  high, near: 0.5",
+        "  high, on: 0.5",
+    ];
+    assert_eq!(lines.len(), expected.len(), "{found}");
+    for expected in expected {
+        assert!(lines.iter().any(|line| line.starts_with(expected)), "{expected}: {found}");
+    }
+    assert!(lines[0].starts_with(expected[0]) && lines[1].starts_with(expected[1]), "{found}");
+    assert!(lines[0].contains(", volume 0.25") && lines[0].contains(", at "), "{found}");
+    assert!(found.contains("clearance: 0.6\n"), "{found}");
+    let counts = "1 interfering, 1 contained, 1 touching, 5 nearer than the clearance";
+    assert!(found.contains(counts), "{found}");
+    assert_eq!(message, "error: 8 pairs interfere or are nearer than the clearance\n");
+    let [found, _] = text(folder.path(), &["cubes.toml", "--within", "0.6", "--limit", "2"], 1);
+    assert!(found.contains("  and 6 more\n") && !found.contains("touching, at"), "{found}");
+}
+
+#[test]
+fn assemblies_without_violations_have_exit_code_0() {
+    let folder = cubes();
+    let place = folder.path();
+    let only = ["cubes.toml", "--ignore", "low,high", "--ignore-always", "low,grain"];
+    let [found, message] = text(place, &only, 0);
+    assert!(
+        found.ends_with("1 touching, 0 nearer than the clearance\n2 pairs ignored\n"),
+        "{found}"
+    );
+    assert!(message.is_empty());
+    let near = [&only[..], &["--within", "0.5", "--within", "high,grain=0.1"]].concat();
+    assert!(text(place, &near, 1)[0].contains("near, on: touching"), "a contact is no clearance");
+    text(place, &[&near[..], &["--allow-contact"]].concat(), 0);
+    let fitted = ["--fit", "low,high=0.3", "--pair", "near,on=0.1", "--ignore", "low,grain"];
+    text(place, &[&["cubes.toml"][..], &fitted].concat(), 0);
+    text(place, &["cubes.toml", "--tolerance", "0.3", "--ignore", "low,grain"], 0);
+    text(place, &["cube.off", "--within", "5"], 0);
+    assert_eq!(text(&data(), &["gearbox_small"], 0)[1], "");
+}
+
+#[test]
+fn json_and_table_have_all_pairs() {
+    let folder = cubes();
+    let arguments = ["cubes.toml", "--json", "--csv", "pairs.csv"];
+    let [found, _] = text(folder.path(), &arguments, 1);
+    let found: Value = json(&found);
+    let pairs = found["pairs"].as_array().unwrap();
+    let findings: Vec<&str> = pairs.iter().map(|pair| pair["finding"].as_str().unwrap()).collect();
+    assert_eq!(findings, ["interfering", "contained", "touching"]);
+    assert_eq!((&found["unit"], &found["within"]), (&"mm".into(), &0.0.into()));
+    assert_eq!(pairs[1]["inner"], "grain");
+    assert_eq!(found["counts"]["violations"], 2);
+    let bounds: [f64; 2] = serde_json::from_value(pairs[0]["depth"].clone()).unwrap();
+    assert!(bounds[0] <= 0.25 && 0.25 <= bounds[1] && bounds[1] - bounds[0] < 1e-9, "{bounds:?}");
+    let table = std::fs::read_to_string(folder.path().join("pairs.csv")).unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines.len(), 4, "{table}");
+    assert!(lines[0].starts_with("first,second,finding,violation,clearance,distance_lower"));
+    assert!(lines[1].starts_with("low,high,interfering,yes,0,,,0.2"), "{table}");
+    assert!(lines[3].starts_with("near,on,touching,no,0,0,0,,,"), "{table}");
+    let columns = lines[0].split(',').count();
+    assert!(lines.iter().all(|line| line.split(',').count() == columns), "{table}");
+    let one = text(folder.path(), &["cubes.toml", "--json", "--threads", "1"], 1);
+    assert_eq!(json(&one[0]), found);
+}
+
+#[test]
+fn hostile_names_are_escaped() {
+    let folder = folder();
+    let place = folder.path();
+    let names = ["=1+1", "a,\"b\"\u{1b}[2J\n<script>\u{202e}"];
+    let manifest = serde_json::json!({"parts": [
+        {"file": "cube.off", "name": names[0]},
+        {"file": "cube.off", "name": names[1], "translation": [0, 0, 0.5]},
+    ]});
+    std::fs::write(place.join("m.json"), manifest.to_string()).unwrap();
+    let [found, _] = text(place, &["m.json", "--csv", "pairs.csv"], 1);
+    assert!(found.contains(r#"  =1+1, a,"b"\u{1b}[2J\n<script>\u{202e} by 0.5"#), "{found}");
+    let table = std::fs::read_to_string(place.join("pairs.csv")).unwrap();
+    let row = r#"'=1+1,"a,""b""\u{1b}[2J\n<script>\u{202e}",interfering,yes,"#;
+    assert!(table.lines().nth(1).unwrap().starts_with(row), "{table}");
+    let [found, _] = text(place, &["m.json", "--json"], 1);
+    assert!(!found.contains(['\u{1b}', '\u{202e}']));
+    assert_eq!(json(&found)["pairs"][0]["parts"], serde_json::json!(names));
+    let output = run(place, &["m.json", "--within", "\u{1b}[31m,x=1"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(!stderr(&output).contains('\u{1b}'));
+}
+
+#[test]
+fn wrong_arguments_and_sources_are_rejected() {
+    let folder = cubes();
+    let place = folder.path();
+    let given = |words: &[&'static str]| [&["cubes.toml"][..], words].concat();
+    for (words, said) in [
+        (["--within", "-1"], "must be finite and not negative"),
+        (["--within", "wide"], "is not a number"),
+        (["--within", "low=1"], "two names and a length, A,B=L"),
+        (["--within", "low,lo=1"], "unknown part lo; did you mean low?"),
+        (["--within", "1e70"], "invalid clearance 1e70"),
+        (["--tolerance", "nan"], "--tolerance"),
+        (["--ignore", "low,none"], "unknown part none"),
+        (["--fit", "low,high"], "expected two names and a tolerance"),
+        (["--limit", "few"], "--limit"),
+        (["--joint", "elbow"], "expected NAME=VALUE"),
+    ] {
+        refused(place, &given(&words), 2, &[said]);
+    }
+    refused(place, &["nowhere"], 3, &["nowhere: cannot be read"]);
+    refused(place, &["broken.off"], 3, &["broken.off", "line"]);
+    std::fs::create_dir(place.join("empty")).unwrap();
+    refused(place, &["empty"], 3, &["the folder has no STL"]);
+    let over = ["--csv", "cube.off"];
+    refused(place, &given(&over), 3, &["is the same file as the input", "another name"]);
+    refused(place, &given(&["--csv", "empty"]), 5, &["empty"]);
+    assert!(run(place, &[]).status.code() == Some(2));
+}
+
+#[test]
+fn assembly_names_the_interference_of_overlapping_pairs() {
+    let folder = cubes();
+    let found = support::answered(folder.path(), &["assembly", "cubes.toml"]);
+    assert!(found.contains("  low, high by 0.250001: interfering, depth 0.25"), "{found}");
+    assert!(found.contains(": grain contained, depth 0.5"), "{found}");
+}

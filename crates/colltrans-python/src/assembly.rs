@@ -14,6 +14,7 @@ use std::time::Duration;
 
 use colltrans::glam::{DAffine3, DVec3};
 use colltrans::solid::StartOverlap;
+use colltrans_assembly::audit::{AuditOptions, AuditedPair, audit};
 use colltrans_assembly::blocking::BlockingGraph;
 use colltrans_assembly::candidates::{CandidateOptions, find_candidates};
 use colltrans_assembly::liaisons::find_liaisons;
@@ -89,6 +90,13 @@ type WantedRow = (Vec<usize>, Vec<usize>, bool, bool);
 /// Parts, number of tested directions, number of cells in which it is proven that no group can be removed,
 /// reason, and for some parts the sets of parts that hold them.
 type StuckRow = (Vec<usize>, usize, Option<usize>, String, Vec<(usize, Vec<Vec<usize>>)>);
+
+/// Indices of the first and the second part, names of the findings, whether they are violations, their numbers, and the
+/// numbers of examined and of ignored pairs.
+type AuditColumns<'py> =
+    ([Vec<usize>; 2], Vec<&'static str>, Vec<bool>, Bound<'py, PyArray2<f64>>, [usize; 2]);
+/// Clearance between two groups of parts.
+type LevelRow = (Vec<String>, Vec<String>, f64);
 
 /// The tolerance of the parts, and how overlaps at the start are treated.
 #[derive(Clone, Copy)]
@@ -229,6 +237,21 @@ fn passed_row(passed: &ToleratedContact) -> PassedRow {
         _ => None,
     };
     (parts, role.map(Role::name), tolerance, tolerated.describe(role))
+}
+
+/// Returns the numbers of a pair of an audit: clearance, tolerance, bounds of the distance, the depth and the volume, the
+/// translation of the depth, the place, the nearest point of the second part, and the least tolerance. Absent values are NaN.
+fn audit_row(pair: &AuditedPair) -> [f64; 18] {
+    const NAN: DVec3 = DVec3::NAN;
+    let (interference, nearest) = (pair.finding.interference(), pair.finding.nearest());
+    let [dl, du] = nearest.map_or([f64::NAN; 2], |found| found.distance);
+    let [pl, pu] = interference.map_or([f64::NAN; 2], |found| found.depth.bounds());
+    let [vl, vu] = interference.map_or([f64::NAN; 2], |found| found.common.volume);
+    let [ox, oy, oz] = interference.map_or(NAN, |found| found.depth.translation).to_array();
+    let [x, y, z] = pair.finding.place().to_array();
+    let [qx, qy, qz] = nearest.map_or(NAN, |found| found.points[1]).to_array();
+    let least = interference.and_then(|found| found.least_tolerance).unwrap_or(f64::NAN);
+    [pair.clearance, pair.tolerance, dl, du, pl, pu, vl, vu, ox, oy, oz, x, y, z, qx, qy, qz, least]
 }
 
 /// Reads a table of handling times, in seconds.
@@ -404,6 +427,31 @@ impl Assembly {
                 travels_of_parts(bodies, &unit_vectors(&directions)?, choices.start, watch)?;
             Ok(rooms.iter().map(|row| room_row(row.iter())).collect())
         })
+    }
+
+    fn audit<'py>(
+        &self,
+        py: Python<'py>,
+        within: f64,
+        levels: Vec<LevelRow>,
+        tolerance: Option<f64>,
+        allow_contact: bool,
+    ) -> PyResult<AuditColumns<'py>> {
+        let options = AuditOptions::default().with_allow_contact(allow_contact);
+        let mut options = options.with_within(within).or_raise()?;
+        for (first, second, length) in &levels {
+            options = options.with_level(&self.0, [first, second], *length).or_raise()?;
+        }
+        let choices = Choices::new(tolerance, false);
+        let found = self.ask(py, choices, |bodies, watch| audit(bodies, &options, watch))?;
+        let pairs = found.pairs.iter();
+        Ok((
+            [0, 1].map(|side| pairs.clone().map(|pair| pair.parts[side]).collect()),
+            pairs.clone().map(|pair| pair.finding.name()).collect(),
+            pairs.clone().map(|pair| pair.is_violation).collect(),
+            table(py, pairs.map(audit_row))?,
+            [found.counts.examined, found.counts.ignored],
+        ))
     }
 
     fn blocking(

@@ -76,6 +76,7 @@ from colltrans._colltrans import (
 )
 from colltrans.assembly import (
     Assembly,
+    Audit,
     Blocking,
     Move,
     PairFit,
@@ -87,6 +88,7 @@ from colltrans.assembly import (
     Stuck,
     Turn,
     Wanted,
+    audit,
 )
 from colltrans.columns import (
     ClearanceColumns,
@@ -137,6 +139,7 @@ __version__ = _version("colltrans")
 __all__ = [
     "Assembly",
     "AssemblyError",
+    "Audit",
     "Behind",
     "Blocked",
     "Blocking",
@@ -221,6 +224,7 @@ __all__ = [
     "WaysOut",
     "Within",
     "WithinColumns",
+    "audit",
     "cast",
     "cast_many",
     "clearance",

@@ -220,6 +220,13 @@ class Assembly:
     def rooms(
         self, directions: ArrayLike, tolerance: float | None, ignore_overlaps: bool
     ) -> list[tuple[list[float], list[int]]]: ...
+    def audit(
+        self,
+        within: float,
+        levels: list[tuple[list[str], list[str], float]],
+        tolerance: float | None,
+        allow_contact: bool,
+    ) -> tuple[list[list[int]], list[str], list[bool], _Floats, list[int]]: ...
     def blocking(
         self, direction: ArrayLike, tolerance: float | None, ignore_overlaps: bool
     ) -> list[list[list[int]]]: ...

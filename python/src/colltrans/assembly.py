@@ -45,6 +45,71 @@ class Rooms:
         return {part: np.flatnonzero(free[k]).tolist() for k, part in enumerate(self.parts)}
 
 
+@dataclass(frozen=True, eq=False)
+class Audit:
+    """The pairs of parts that interfere, touch, or are nearer than their clearance.
+
+    The worst pair is first. Absent numbers are NaN. All bounds are proven ``[lower, upper]``.
+
+    Attributes
+    ----------
+    parts : tuple of str
+    first, second : ndarray of int, shape (N,)
+        Indices of the parts of each pair, the smaller first.
+    finding : ndarray of str, shape (N,)
+        ``"interfering"``, ``"contained"``, ``"touching"`` or ``"apart"``.
+    violation : ndarray of bool, shape (N,)
+        Whether the pair interferes, is contained, or is nearer than its clearance.
+    clearance, tolerance : ndarray of shape (N,)
+        The required clearance and the tolerance of the pair.
+    distance : ndarray of shape (N, 2)
+        Bounds of the distance of parts that touch or are apart.
+    depth : ndarray of shape (N, 2)
+        Bounds of the length of the shortest translation that separates parts that interfere or are
+        contained.
+    volume : ndarray of shape (N, 2)
+        Bounds of the volume of the common part.
+    translation : ndarray of shape (N, 3)
+        Translations of the first part that separate it; as long as the upper bound of the depth.
+    point : ndarray of shape (N, 3)
+        A point inside both parts, or else the nearest point of the first part.
+    other_point : ndarray of shape (N, 3)
+        The nearest point of the second part, of parts that touch or are apart.
+    least_tolerance : ndarray of shape (N,)
+        The tolerance with which parts that interfere would touch; NaN if there is none.
+    examined, ignored : int
+        Number of pairs whose boxes are near enough, and of those that are ignored or glued.
+    """
+
+    parts: tuple[str, ...]
+    first: NDArray[np.int64]
+    second: NDArray[np.int64]
+    finding: NDArray[np.str_]
+    violation: NDArray[np.bool_]
+    clearance: Floats
+    tolerance: Floats
+    distance: Floats
+    depth: Floats
+    volume: Floats
+    translation: Floats
+    point: Floats
+    other_point: Floats
+    least_tolerance: Floats
+    examined: int
+    ignored: int
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    def violations(self) -> list[tuple[str, str]]:
+        """Returns the names of the parts of each violation, the worst first."""
+        pairs = zip(self.first[self.violation], self.second[self.violation], strict=True)
+        return [(self.parts[a], self.parts[b]) for a, b in pairs]
+
+    def __repr__(self) -> str:
+        return f"Audit({self.examined} pairs examined, {int(self.violation.sum())} violations)"
+
+
 @dataclass(frozen=True)
 class Blocking:
     """The blocking graph of one direction.
@@ -692,6 +757,70 @@ class Assembly:
         by = np.array([by for _, by in rows], dtype=np.int64).reshape(shape)
         return Rooms(tuple(self.parts), table / lengths, distance, by)
 
+    def audit(
+        self,
+        within: float = 0.0,
+        *,
+        levels: Mapping[tuple[str, str], float] | None = None,
+        tolerance: float | None = None,
+        allow_contact: bool = False,
+    ) -> Audit:
+        """Finds all pairs of parts that interfere, touch, or are nearer than a clearance.
+
+        Pairs with a role or a tolerance of their own have no clearance. Ignored and glued pairs are
+        left out.
+
+        Parameters
+        ----------
+        within : float
+            The clearance of all pairs. With 0, only interferences are violations.
+        levels : mapping of (str, str) to float, optional
+            Clearances between two groups of parts, for example ``{("pipe*", "beam*"): 50}``. A
+            later one replaces an earlier one.
+        tolerance : float, optional
+            Parts that overlap by no more than this length touch. The default follows from the chord
+            errors of the parts and the precision of their files.
+        allow_contact : bool
+            Whether parts that touch satisfy every clearance.
+
+        Returns
+        -------
+        Audit
+
+        Examples
+        --------
+        >>> from colltrans import Assembly
+        >>> found = Assembly.read("data/gearbox_small").audit(0.5, allow_contact=True)
+        >>> bool((found.distance[found.finding == "apart", 1] < 0.5).all())
+        True
+        """
+        asked = [([a], [b], float(length)) for (a, b), length in (levels or {}).items()]
+        sides, finding, violation, numbers, counts = self._assembly.audit(
+            float(within), asked, tolerance, allow_contact
+        )
+        first, second = (np.array(side, dtype=np.int64) for side in sides)
+        columns = {
+            "clearance": numbers[:, 0],
+            "tolerance": numbers[:, 1],
+            "distance": numbers[:, 2:4],
+            "depth": numbers[:, 4:6],
+            "volume": numbers[:, 6:8],
+            "translation": numbers[:, 8:11],
+            "point": numbers[:, 11:14],
+            "other_point": numbers[:, 14:17],
+            "least_tolerance": numbers[:, 17],
+        }
+        return Audit(
+            tuple(self.parts),
+            first,
+            second,
+            np.array(finding, dtype=np.str_),
+            np.array(violation, dtype=np.bool_),
+            **columns,
+            examined=counts[0],
+            ignored=counts[1],
+        )
+
     def blocking(
         self,
         direction: ArrayLike,
@@ -931,3 +1060,46 @@ def _turn(
     words: str,
 ) -> Turn:
     return Turn(tuple(point), turns, phase, tuple(aside), tolerance, words)
+
+
+def audit(
+    parts: Assembly | Mapping[str, tuple[ArrayLike, Any]] | str | PathLike[str],
+    within: float = 0.0,
+    *,
+    levels: Mapping[tuple[str, str], float] | None = None,
+    tolerance: float | None = None,
+    allow_contact: bool = False,
+) -> Audit:
+    """Finds all pairs of parts that interfere, touch, or are nearer than a clearance.
+
+    Parameters
+    ----------
+    parts : Assembly, mapping of str to (vertices, faces), or path
+        The parts, or a file or folder for :meth:`Assembly.read`.
+    within, levels, tolerance, allow_contact
+        See :meth:`Assembly.audit`.
+
+    Returns
+    -------
+    Audit
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from colltrans import audit
+    >>> corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    >>> faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    >>> parts = {"a": (corners, faces), "b": (corners + [0.75, 0, 0], faces)}
+    >>> found = audit(parts)
+    >>> found
+    Audit(1 pairs examined, 1 violations)
+    >>> found.finding.tolist(), bool(np.allclose(found.depth, 0.25))
+    (['interfering'], True)
+    """
+    if isinstance(parts, Assembly):
+        assembly = parts
+    elif isinstance(parts, (str, PathLike)):
+        assembly = Assembly.read(parts)
+    else:
+        assembly = Assembly(parts)
+    return assembly.audit(within, levels=levels, tolerance=tolerance, allow_contact=allow_contact)

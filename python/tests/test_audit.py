@@ -1,0 +1,73 @@
+"""Tests audits: columns as on the command line, and refusals."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_assemblies import GEARBOX, cuboid
+
+from colltrans import Assembly, AssemblyError, InputError, audit
+
+
+def test_columns_equal_those_of_the_command_line(cli: Path) -> None:
+    command: list[str | Path] = [cli, "audit", GEARBOX, "--within", "0.5", "--json"]
+    told = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert told.returncode == 1, told.stderr
+    known = json.loads(told.stdout)
+    found = audit(GEARBOX, 0.5)
+    assert (found.examined, found.ignored) == (known["counts"]["examined"], 0)
+    assert len(found) == len(known["pairs"]) > 0
+    for k, pair in enumerate(known["pairs"]):
+        assert [found.parts[found.first[k]], found.parts[found.second[k]]] == pair["parts"]
+        assert found.finding[k] == pair["finding"]
+        assert found.violation[k] == pair["violation"]
+        for name in ("clearance", "tolerance", "distance", "depth", "volume", "translation"):
+            value = getattr(found, name)[k]
+            if name in pair:
+                assert value.tolist() == pair[name]
+            else:
+                assert np.isnan(value).all()
+        if "points" in pair:
+            assert [found.point[k].tolist(), found.other_point[k].tolist()] == pair["points"]
+
+
+def test_boxes_interfere_touch_or_are_near() -> None:
+    parts = {
+        "a": cuboid([0, 0, 0], [1, 1, 1]),
+        "over": cuboid([0.75, 0, 0], [2, 1, 1]),
+        "on": cuboid([0, 0, 1], [1, 1, 2]),
+        "near": cuboid([-1.5, 0, 0], [-0.5, 1, 1]),
+        "grain": cuboid([0.25, 0.25, 0.25], [0.5, 0.5, 0.5]),
+    }
+    found = audit(parts, 0.75)
+    pairs = list(zip(found.first.tolist(), found.second.tolist(), strict=True))
+    assert pairs[:2] == [(0, 1), (0, 4)]
+    assert found.finding[:2].tolist() == ["interfering", "contained"]
+    np.testing.assert_allclose(found.depth[0], 0.25)
+    np.testing.assert_allclose(found.volume[:2].mean(axis=1), [0.25, 1 / 64], rtol=0.01)
+    at = pairs.index((0, 3))
+    assert found.finding[at] == "apart" and found.violation[at]
+    assert found.distance[at, 0] <= 0.5 <= found.distance[at, 1]
+    assert found.finding[pairs.index((0, 2))] == "touching"
+    assert len(found.violations()) == int(found.violation.sum())
+    # Levels replace the clearance, roles remove it.
+    assembly = Assembly(parts).with_pair("a", "over", tolerance=0.3)
+    relaxed = assembly.audit(0.75, levels={("*", "near"): 0.5}, allow_contact=True)
+    assert ("a", "near") not in relaxed.violations()
+    assert ("a", "over") not in relaxed.violations()
+    assert ("a", "grain") in relaxed.violations()
+
+
+def test_invalid_arguments_are_refused() -> None:
+    parts = {"a": cuboid([0, 0, 0], [1, 1, 1])}
+    with pytest.raises(AssemblyError, match="clearance"):
+        audit(parts, -1.0)
+    with pytest.raises(AssemblyError, match="unknown part b"):
+        audit(parts, levels={("a", "b"): 1.0})
+    with pytest.raises(AssemblyError, match="tolerance"):
+        audit(parts, tolerance=-1.0)
+    with pytest.raises(InputError):
+        audit(3)  # type: ignore[arg-type]
+    assert len(audit(parts, 10.0)) == 0

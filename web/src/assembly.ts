@@ -417,7 +417,7 @@ export class AssemblyTab {
     this.showArrow();
     const { part } = asked;
     const met = part === null ? undefined : this.along?.closures[part];
-    this.seen?.fade((k) => met !== undefined && !met.includes(this.name(k)));
+    this.seen?.fade((k) => (met !== undefined && !met.includes(this.name(k)) ? 0.22 : 1));
   });
 
   themeChanged() {

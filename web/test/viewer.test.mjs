@@ -1,13 +1,13 @@
-// The viewer in an assembly's report, opened as a file. Needs the example `report`.
+// The viewer in the reports of an assembly, opened as a file. Needs the example `report`.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, readdirSync, rmSync } from "node:fs";
+import { mkdtempSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { data, isCut, launch, program, watch } from "../browser.mjs";
+import { boxes, data, isCut, launch, program, watch } from "../browser.mjs";
 
 test("viewer shows the plan of a report", async () => {
   const folder = mkdtempSync(join(tmpdir(), "report-"));
@@ -33,6 +33,41 @@ test("viewer shows the plan of a report", async () => {
     assert.ok((await page.textContent("#viewer .name")).length > 2);
     assert.deepEqual(page.complaints, []);
     assert.ok(page.read.every((url) => url.startsWith("file:") || url.startsWith("data:") || url.startsWith("blob:")), page.read.join());
+  } finally {
+    await browser.close();
+    rmSync(folder, { recursive: true });
+  }
+});
+
+test("a click in a report of an audit shows the pair and its way out", async () => {
+  const folder = mkdtempSync(join(tmpdir(), "report-"));
+  // The first two overlap by 0.5 along x, the others are 0.25 apart; the last one touches nothing.
+  const parts = { left: [[0, 0, 0], [2, 2, 2]], middle: [[1.5, 0.25, 0.25], [4, 1.75, 1.75]], right: [[4.25, 0, 0], [6, 2, 2]], far: [[20, 0, 0], [22, 2, 2]] };
+  for (const [name, ends] of Object.entries(parts)) writeFileSync(join(folder, `${name}.off`), boxes(ends));
+  execFileSync(program("report"), ["0", join(folder, "clashes.html"), ...Object.keys(parts).map((name) => join(folder, `${name}.off`))]);
+  const browser = await launch();
+  try {
+    const page = watch(await browser.newPage({ viewport: { width: 1280, height: 800 } }));
+    await page.goto(pathToFileURL(join(folder, "clashes.html")).href);
+    await page.waitForSelector("#viewer canvas");
+    assert.equal(await page.locator("details.clash").count(), 2);
+    assert.match(await page.textContent("#viewer output"), /^left and middle/);
+    await page.locator('#viewer [aria-label="Steps of the plan"]').press("End");
+    assert.match(await page.textContent("#viewer output"), /^Step 1 of 1: the least way out that was found, of left/);
+    // The second finding has no way out, and the filter hides the first one.
+    await page.click("details.clash >> nth=1 >> summary");
+    assert.match(await page.textContent("#viewer output"), /^middle and right/);
+    assert.equal(await page.locator("#viewer input").isDisabled(), true);
+    await page.fill(".filter input", "RIGHT");
+    assert.deepEqual(await page.locator("details.clash:visible .names").allTextContents(), ["middle · right"]);
+    await page.fill(".filter input", "");
+    await page.selectOption(".filter select", "interfering");
+    assert.deepEqual(await page.locator("details.clash:visible .names").allTextContents(), ["left · middle"]);
+    assert.deepEqual(page.complaints, []);
+    assert.ok(page.read.every((url) => url.startsWith("file:") || url.startsWith("data:") || url.startsWith("blob:")), page.read.join());
+    // On a phone nothing is wider than the screen.
+    await page.setViewportSize({ width: 400, height: 800 });
+    assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 400);
   } finally {
     await browser.close();
     rmSync(folder, { recursive: true });

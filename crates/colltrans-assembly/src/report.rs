@@ -1,14 +1,18 @@
 //! Reports for people: one HTML file ([`html`]) and an animation ([`glb`]), and all findings as JSON
-//! ([`facts`]).
+//! ([`facts`]). Of an audit: an HTML file ([`clashes`]), and issues for programs of the building industry ([`bcf`]).
 //!
 //! - `cover`: the first page, with an `exploded` view. `sheet`: a page for each step. `after`: the sections
 //!   after the steps.
 //! - `tables`: folded tables with blocking graphs ([`graph`]). `viewer`: an interactive view.
 //! - `words`: lengths, directions and names as text. `kinds`: parts of equal shape.
-//! - `scene`: pictures, with the `lines` of each part.
+//! - `scene`: pictures, with the `lines` of each part. `cut`: a plane through the place where two parts meet.
 
 mod after;
+#[cfg(feature = "bcf")]
+pub mod bcf;
+pub mod clashes;
 mod cover;
+mod cut;
 mod exploded;
 pub mod facts;
 pub mod glb;

@@ -3,14 +3,17 @@
 //! Sources, roles and tolerances are those of [`assembly`](crate::assembly). `colltrans_assembly::audit` finds the pairs.
 
 use std::fmt::Write as _;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use colltrans_assembly::audit::{
     Audit, AuditCounts, AuditOptions, AuditedPair, PairFinding, audit, audit_csv, audit_json,
 };
+use colltrans_assembly::report::bcf::bcf_file;
+use colltrans_assembly::report::clashes::clashes_page;
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
 
 use crate::args::AuditArguments;
-use crate::assembly::output::head_text;
+use crate::assembly::output::{head_text, source_title};
 use crate::assembly::{in_thread_pool, read_assembly, show_stages, stage_bar};
 use crate::failure::{Code, Failure, note, print, print_json};
 use crate::inputs::check_output_path;
@@ -26,9 +29,9 @@ pub(crate) fn run(arguments: &AuditArguments) -> Result<(), Failure> {
 fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
     let assembly = read_assembly(&arguments.source, &arguments.input, &arguments.roles)?;
     let options = audit_options(arguments, &assembly)?;
-    if let Some(csv) = &arguments.csv {
-        let inputs: Vec<_> = assembly.files().iter().map(std::path::PathBuf::as_path).collect();
-        check_output_path(csv, &inputs, "give the table another name")?;
+    let inputs: Vec<_> = assembly.files().iter().map(std::path::PathBuf::as_path).collect();
+    for path in [&arguments.csv, &arguments.report, &arguments.bcf].into_iter().flatten() {
+        check_output_path(path, &inputs, "give the output another name")?;
     }
     let fit = arguments.tolerance.map_or_else(|| Fit::default_for(&assembly), Fit::Tolerance);
     let bodies = Bodies::new(&assembly, fit)?;
@@ -39,9 +42,7 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
     for text in assembly.notes() {
         note(text);
     }
-    if let Some(csv) = &arguments.csv {
-        outputs::write(csv, audit_csv(&assembly, &found).as_bytes())?;
-    }
+    write_files(&bodies, &options, &found, arguments)?;
     if arguments.json {
         print_json(&format!("{}\n", audit_json(&bodies, &options, &found)))?;
     } else {
@@ -54,6 +55,41 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
             Err(Failure::new(Code::Lines, format!("{pairs} nearer than the clearance")))
         }
     }
+}
+
+/// Writes the requested files.
+fn write_files(
+    bodies: &Bodies,
+    options: &AuditOptions,
+    found: &Audit,
+    arguments: &AuditArguments,
+) -> Result<(), Failure> {
+    let (assembly, title) = (bodies.assembly(), source_title(&arguments.source));
+    if let Some(csv) = &arguments.csv {
+        outputs::write(csv, audit_csv(assembly, found).as_bytes())?;
+    }
+    if let Some(report) = &arguments.report {
+        outputs::write(report, clashes_page(bodies, options, found, &title).as_bytes())?;
+    }
+    if let Some(path) = &arguments.bcf {
+        let bytes = bcf_file(assembly, found, &title, creation_seconds()?)
+            .map_err(|error| Failure::write_error(path.display(), &error))?;
+        outputs::write(path, &bytes)?;
+    }
+    Ok(())
+}
+
+/// Returns the time of creation of the topics in a BCF file, in seconds since 1970: that of the environment variable
+/// `SOURCE_DATE_EPOCH`, or else the current time.
+fn creation_seconds() -> Result<u64, Failure> {
+    let Some(given) = std::env::var_os("SOURCE_DATE_EPOCH") else {
+        let now = SystemTime::now().duration_since(UNIX_EPOCH);
+        return Ok(now.map_or(0, |since| since.as_secs()));
+    };
+    given.to_str().and_then(|text| text.parse().ok()).ok_or_else(|| {
+        let text = format!("SOURCE_DATE_EPOCH={}: expected seconds since 1970", given.display());
+        Failure::new(Code::Usage, text)
+    })
 }
 
 /// Returns the required clearances of the command line.

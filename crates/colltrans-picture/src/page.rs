@@ -136,13 +136,23 @@ impl Page {
         self.write_path(look, &data);
     }
 
-    /// Writes convex polygons with the same attributes.
+    /// Writes polygons with the same attributes as one path. Of a polygon that is not convex, the parts inside the
+    /// frame may be joined along its margin, outside of the picture.
     pub fn polygons<I: IntoIterator<Item = Vec<DVec2>>>(&mut self, look: &str, all: I) {
         let mut data = String::new();
         for polygon in all {
             push_path(&mut data, &self.frame.clip_polygon(&polygon), true);
         }
         self.write_path(look, &data);
+    }
+
+    /// Writes a clip path of polygons for groups with the attribute `clip-path="url(#NAME)"`. The name must be unique
+    /// in a document.
+    pub fn clip_path<I: IntoIterator<Item = Vec<DVec2>>>(&mut self, name: &str, all: I) {
+        let name = escape_xml(name);
+        let _ = write!(self.body, r#"<clipPath id="{name}">"#);
+        self.polygons("", all);
+        self.body.push_str("</clipPath>\n");
     }
 
     /// Writes segments with the same stroke.

@@ -1,7 +1,8 @@
 //! Writes the report of an assembly as the command `assembly -o` does, for the test of its viewer.
 //!
 //! The arguments are a tolerance, the output file, and the parts. A single file may be a manifest; its first
-//! part is then mapped too.
+//! part is then mapped too. If the output file is named `clashes.html`, it is the report of an audit instead, with a
+//! clearance of 1.
 //!
 //! In `crates/colltrans-wasm`:
 //! `cargo run --release --features report --example report -- 0.1 report.html *.off`
@@ -9,8 +10,9 @@
 use std::error::Error;
 use std::path::Path;
 
+use colltrans_assembly::audit::{AuditOptions, audit};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
-use colltrans_assembly::report::html;
+use colltrans_assembly::report::{clashes, html};
 use colltrans_assembly::{AnalysisRequest, Assembly, Bodies, Fit, Part, Piece, Watch};
 use colltrans_assembly_io::read::{ReadOptions, read};
 use glam::DAffine3;
@@ -28,6 +30,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         _ => (assembly(files)?, false),
     };
     let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance.parse()?))?;
+    if Path::new(target).file_name().is_some_and(|name| name == "clashes.html") {
+        let options = AuditOptions::default().with_within(1.0)?;
+        let found = audit(&bodies, &options, watch)?;
+        return Ok(std::fs::write(
+            target,
+            clashes::clashes_page(&bodies, &options, &found, "parts"),
+        )?);
+    }
     let mut findings = AnalysisRequest::default().analyse(&bodies, watch)?;
     let name = assembly.parts()[0].name().to_owned();
     if is_manifest {

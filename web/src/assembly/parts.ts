@@ -38,7 +38,7 @@ export class Parts {
   readonly camera = new PerspectiveCamera(30, 1, 0.01, 1e4);
   readonly renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
   readonly orbit: OrbitControls;
-  private readonly parts: { group: Group; material: MeshLambertMaterial; line: LineBasicMaterial }[] = [];
+  private readonly parts: { group: Group; material: MeshLambertMaterial; line: LineBasicMaterial; colour: Vec }[] = [];
   private readonly name = h("div", { class: "name", hidden: true });
   private names: string[] = [];
   private lit = -1;
@@ -114,7 +114,7 @@ export class Parts {
     const line = new LineBasicMaterial({ color: 0x1d2733, transparent: true, opacity: 0.6 });
     group.add(new Mesh(indexed, material), new LineSegments(new EdgesGeometry(indexed, 20), line));
     this.scene.add(group);
-    this.parts.push({ group, material, line });
+    this.parts.push({ group, material, line, colour: part.colour });
   }
 
   /** Places all parts after `t` of the moves. */
@@ -152,16 +152,31 @@ export class Parts {
     orbit.update();
   }
 
-  /** Shows each part opaque or pale. */
-  fade(pale: (part: number) => boolean) {
-    this.parts.forEach(({ material, line }, k) => {
-      const faded = pale(k);
+  /** Looks at a place, relative to the middle of the assembly, from the current direction. `radius` is half the extent to show. */
+  focus(at: Vec, radius: number) {
+    const { camera, orbit } = this;
+    const far = (1.6 * radius) / Math.sin((camera.fov * Math.PI) / 360) / Math.min(1, camera.aspect);
+    const from = camera.position.clone().sub(orbit.target).setLength(far);
+    orbit.target.set(...at);
+    camera.position.copy(orbit.target).add(from);
+    [camera.near, camera.far] = [far / 1e3, 1e3 * (far + this.extent)];
+    camera.updateProjectionMatrix();
+    orbit.update();
+  }
+
+  /** Sets the opacity of each part, from 0 to 1, and the colours of parts that are not to have their own. */
+  fade(opacity: (part: number) => number, paint: (part: number) => string | undefined = () => undefined) {
+    this.parts.forEach(({ material, line, colour }, k) => {
+      const other = paint(k);
+      if (other) material.color.set(other);
+      else material.color.setRGB(...colour, "srgb");
+      material.opacity = opacity(k);
+      const faded = material.opacity < 1;
       // The change of transparency needs another shader program.
       if (material.transparent !== faded) material.needsUpdate = true;
       material.transparent = faded;
-      material.opacity = faded ? 0.22 : 1;
       material.depthWrite = !faded;
-      line.opacity = faded ? 0.18 : 0.6;
+      line.opacity = 0.6 * Math.min(1, 1.4 * material.opacity);
     });
     this.render();
   }

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::{Analysis, Report, after, cover, sheet, tables, viewer};
 
 /// Style sheet of the report.
-const STYLE: &str = include_str!("../../assets/report.css");
+pub(super) const STYLE: &str = include_str!("../../assets/report.css");
 
 /// Returns the report as an HTML document.
 pub fn report_page(f: &Analysis, title: &str) -> String {

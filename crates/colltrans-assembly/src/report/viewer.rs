@@ -14,9 +14,9 @@ use super::{Analysis, direction_name, kinds};
 use crate::part::Part;
 
 /// Script of the viewer.
-const SCRIPT: &str = include_str!("../../assets/viewer.js");
+pub(super) const SCRIPT: &str = include_str!("../../assets/viewer.js");
 /// Maximum number of triangles in the viewer, which bounds the size of the page.
-const MAX_TRIANGLES: usize = 400_000;
+pub(super) const MAX_TRIANGLES: usize = 400_000;
 
 /// Returns the viewer, or a reference to the animation for large assemblies; empty without parts.
 pub(super) fn viewer_section(f: &Analysis) -> Markup {
@@ -41,7 +41,7 @@ pub(super) fn viewer_section(f: &Analysis) -> Markup {
 }
 
 /// Returns JSON in which no text can end the surrounding element or begin a comment.
-fn script_data(data: &Value) -> PreEscaped<String> {
+pub(super) fn script_data(data: &Value) -> PreEscaped<String> {
     let text = data.to_string();
     PreEscaped(text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026"))
 }
@@ -77,7 +77,7 @@ fn viewer_data(f: &Analysis) -> Value {
 
 /// Returns a part: vertices relative to the middle of the assembly in single precision, and triangles, both
 /// in Base64.
-fn part_data(part: &Part, colour: [f64; 3], middle: DVec3) -> Value {
+pub(super) fn part_data(part: &Part, colour: [f64; 3], middle: DVec3) -> Value {
     let solid = part.solid();
     let places = solid.vertices().iter().flat_map(|v| (*v - middle).as_vec3().to_array());
     let vertices: Vec<u8> = places.flat_map(f32::to_le_bytes).collect();

@@ -5,6 +5,7 @@ mod common;
 
 mod audit;
 mod bounds;
+mod clashes;
 mod collection;
 mod constraints;
 mod fuzz_corpus;

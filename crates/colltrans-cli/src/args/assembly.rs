@@ -93,6 +93,14 @@ pub(crate) struct AuditArguments {
     /// Write all pairs as a table
     #[arg(long, value_name = "OUT.csv")]
     pub(crate) csv: Option<PathBuf>,
+    /// Write a report: a list of all pairs, with sections and a view of each
+    #[arg(long, value_name = "OUT.html")]
+    pub(crate) report: Option<PathBuf>,
+    /// Write the violations as issues in the BIM Collaboration Format, with pictures
+    ///
+    /// Their time of creation is now, or SOURCE_DATE_EPOCH (seconds since 1970).
+    #[arg(long, value_name = "OUT.bcf")]
+    pub(crate) bcf: Option<PathBuf>,
     /// List at most N pairs as text
     #[arg(long, value_name = "N")]
     pub(crate) limit: Option<usize>,

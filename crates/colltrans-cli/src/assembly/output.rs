@@ -62,8 +62,7 @@ fn write_files(
     std::fs::create_dir_all(folder).map_err(|e| Failure::write_error(folder.display(), &e))?;
     let mut outputs = Outputs::default();
     let mut put = |name: &str, bytes: &[u8]| outputs.write(folder.join(name), bytes);
-    let source = arguments.source.canonicalize().unwrap_or_else(|_| arguments.source.clone());
-    let title = source.file_stem().map_or("assembly".into(), |s| s.to_string_lossy().into_owned());
+    let title = source_title(&arguments.source);
     put("report.html", html::report_page(findings, &title).as_bytes())?;
     put("disassembly.glb", &glb::plan_animation(findings.bodies.assembly(), &findings.plan))?;
     put("assembly.json", escape_json(&json.to_string()).as_bytes())?;
@@ -86,6 +85,12 @@ fn write_files(
         }
     }
     outputs.finish()
+}
+
+/// Returns the title of reports about a source: its name without extension.
+pub(crate) fn source_title(source: &Path) -> String {
+    let source = source.canonicalize().unwrap_or_else(|_| source.to_owned());
+    source.file_stem().map_or("assembly".into(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// Checks that no output overwrites an input.

@@ -182,3 +182,32 @@ fn assembly_names_the_interference_of_overlapping_pairs() {
     assert!(found.contains("  low, high by 0.250001: interfering, depth 0.25"), "{found}");
     assert!(found.contains(": grain contained, depth 0.5"), "{found}");
 }
+
+#[test]
+fn report_and_bcf_file_have_the_violations_and_a_fixed_date() {
+    let folder = cubes();
+    let run_at = |seconds: &str| {
+        let files = ["--report", "clashes.html", "--bcf", "clashes.bcf"];
+        let arguments = [&["audit", "cubes.toml", "--within", "0.6"][..], &files].concat();
+        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("colltrans"));
+        command.current_dir(folder.path()).env("SOURCE_DATE_EPOCH", seconds).args(arguments);
+        command.output().unwrap()
+    };
+    assert_eq!(run_at("951782400").status.code(), Some(1));
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    let page = String::from_utf8(read("clashes.html")).unwrap();
+    assert!(page.contains("<h1>cubes</h1>") && page.contains("low · high"));
+    let first = read("clashes.bcf");
+    assert!(first.starts_with(b"PK"));
+    // The same second gives the same bytes, another one does not.
+    run_at("951782400");
+    assert_eq!(first, read("clashes.bcf"));
+    run_at("951782401");
+    assert_ne!(first, read("clashes.bcf"));
+    let wrong = run_at("yesterday");
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(stderr(&wrong).contains("SOURCE_DATE_EPOCH=yesterday: expected seconds since 1970"));
+    for flag in ["--report", "--bcf"] {
+        refused(folder.path(), &["cubes.toml", flag, "cube.off"], 2, &["cube.off"]);
+    }
+}

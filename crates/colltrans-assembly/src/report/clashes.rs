@@ -1,0 +1,350 @@
+//! The report of an audit: one HTML file with all findings, the worst first.
+//!
+//! - Each finding has its numbers and a section through its place ([`cut`](super::cut)).
+//! - A click on a finding shows the pair in the viewer, and the least way out as a motion. The script also filters the
+//!   list. Without scripts the list is complete.
+//! - The file contains each part once. Sections and parts are limited by [`MAX_SECTION_BYTES`] and
+//!   [`MAX_TRIANGLES`](super::viewer::MAX_TRIANGLES); the worst findings come first.
+
+use std::collections::BTreeSet;
+
+use colltrans::Aabb;
+use glam::DVec3;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use super::cut::{Cut, Measure};
+use super::{direction_name, html::STYLE, kind_colour, picture_markup, short_number, viewer};
+use crate::audit::{Audit, AuditOptions, AuditedPair, PairFinding};
+use crate::bodies::Bodies;
+use crate::part::Assembly;
+
+/// Maximum number of listed findings.
+const MAX_FINDINGS: usize = 5_000;
+/// Number of bytes of all sections after which no more are drawn.
+const MAX_SECTION_BYTES: usize = 24_000_000;
+/// Number of sections that are drawn at a time.
+const SECTIONS_AT_A_TIME: usize = 64;
+/// Names of the findings, in the order of the report.
+const KINDS: [&str; 4] = ["interfering", "contained", "touching", "apart"];
+/// Style sheet in addition to that of all reports.
+const CLASH_STYLE: &str = "
+body { max-width: 88em; }
+.clash { padding: 0; margin: 0 0 .5em; }
+.clash > summary { padding: .45em .9em; display: flex; gap: .2em .8em; align-items: baseline; flex-wrap: wrap; }
+.clash > summary::before { content: '▸'; color: var(--soft); }
+.clash[open] > summary::before { content: '▾'; }
+.clash.shown { border-color: #0b57d0; box-shadow: 0 0 0 1px #0b57d0; }
+.clash > div { padding: 0 .9em .6em; }
+.clash .names { flex: 1 1 9em; min-width: 0; overflow-wrap: anywhere; }
+.clash .measure { font-weight: 400; white-space: nowrap; }
+.clash figure > svg { border: 1px solid var(--line); }
+.kind { font-size: .8em; padding: .05em .6em; border-radius: 1em; color: #fff; background: #56616f; }
+.kind.interfering { background: #b01657; } .kind.contained { background: #8a3ea8; } .kind.apart { background: #b45f06; }
+.filter { display: flex; flex-wrap: wrap; gap: .5em 1em; margin: .6em 0; align-items: center; }
+.filter select, .filter input { font: inherit; padding: .2em .5em; max-width: 100%; }
+.blue { background: #7b9cc9; } .sand { background: #c6bca5; } .both { background: #b01657; }
+#clashes #viewer { position: sticky; top: .5em; z-index: 1; margin: 0 0 1em; }
+#clashes #viewer .view { height: 34vh; }
+@media (min-width: 62em) {
+  #clashes { display: grid; grid-template-columns: minmax(0, 1fr) minmax(0, 1.1fr); gap: 0 1.4em; align-items: start; }
+  #clashes #viewer { grid-column: 2; grid-row: 1; }
+  #clashes #viewer .view { height: min(70vh, 44em); }
+}
+@media print { .clash:not([open]) { display: block; } .clash { break-inside: avoid; } .filter { display: none; } }
+";
+
+/// A line of text about a finding.
+pub(super) struct Fact {
+    /// Name of the quantity.
+    pub(super) name: &'static str,
+    /// Value with its unit.
+    pub(super) value: String,
+}
+
+/// Returns the report as an HTML document.
+pub fn clashes_page(bodies: &Bodies, options: &AuditOptions, audit: &Audit, title: &str) -> String {
+    let assembly = bodies.assembly();
+    let listed = &audit.pairs[..audit.pairs.len().min(MAX_FINDINGS)];
+    let sections = sections(assembly, listed);
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width";
+                title { (title) }
+                style { (PreEscaped(STYLE)) (PreEscaped(CLASH_STYLE)) }
+            }
+            body {
+                main {
+                    h1 { (title) }
+                    (summary(bodies, options, audit))
+                    div id="clashes" {
+                        (viewer(assembly, listed))
+                        div id="findings" {
+                            @for (k, pair) in listed.iter().enumerate() {
+                                (finding(assembly, k, pair, sections.get(k)))
+                            }
+                        }
+                    }
+                }
+                script { (PreEscaped(viewer::SCRIPT)) }
+            }
+        }
+    };
+    page.into_string()
+}
+
+/// Returns the numbers of findings and the settings of the audit.
+fn summary(bodies: &Bodies, options: &AuditOptions, audit: &Audit) -> Markup {
+    let assembly = bodies.assembly();
+    let (counts, parts) = (audit.counts, assembly.parts().len());
+    let numbers = [counts.interfering, counts.contained, counts.touching, counts.near];
+    let is_clean = counts.violations == 0;
+    let violations = match counts.violations {
+        0 => "No pair violates its clearance.".into(),
+        1 => "1 pair violates its clearance.".into(),
+        count => format!("{count} pairs violate their clearance."),
+    };
+    let more = audit.pairs.len().saturating_sub(MAX_FINDINGS);
+    html! {
+        p.proof[is_clean].warn[!is_clean] { b { (violations) } }
+        dl.facts {
+            div { dt { "parts" } dd { (parts) } }
+            div { dt { "examined pairs" } dd { (counts.examined) } }
+            @for (kind, number) in KINDS.iter().zip(numbers) {
+                div { dt { (kind) } dd { (number) } }
+            }
+            div { dt { "clearance" } dd { (length_text(options.within, assembly)) } }
+            div { dt { "tolerance, at most" } dd { (length_text(bodies.fit().tolerance(), assembly)) } }
+        }
+        @if counts.ignored > 0 { p.soft { (counts.ignored) " pairs are ignored or glued, and not examined." } }
+        @if more > 0 {
+            p.soft { "The list ends after " (MAX_FINDINGS) " findings. JSON and CSV have " (more) " more." }
+        }
+        @if assembly.unit().is_none() { p.soft { "The file states no unit of length." } }
+        @for note in assembly.notes().iter().take(5) { p.soft { (note) } }
+    }
+}
+
+/// Returns the list entry of a finding.
+fn finding(assembly: &Assembly, k: usize, pair: &AuditedPair, section: Option<&String>) -> Markup {
+    let [a, b] = names(assembly, pair);
+    let kind = pair.finding.name();
+    html! {
+        details.clash data-kind=(kind) data-violation[pair.is_violation] open[k == 0] {
+            summary {
+                span { (k + 1) }
+                span.names { (a) " · " (b) }
+                span.measure { (headline(assembly, pair)) }
+                span.{ "kind " (kind) } { (kind) }
+            }
+            div {
+                dl.facts { @for fact in facts(assembly, pair) { div { dt { (fact.name) } dd { (fact.value) } } } }
+                @match section {
+                    Some(section) => figure {
+                        (picture_markup(section.clone()))
+                        figcaption {
+                            "Section through the place: " span.swatch.blue {} " " (a) ", " span.swatch.sand {} " " (b)
+                            @if pair.finding.interference().is_some() { ", " span.swatch.both {} " their common part" }
+                            "."
+                        }
+                    },
+                    None => p.soft { "Without a section, because those of the findings above fill the file." },
+                }
+            }
+        }
+    }
+}
+
+/// Draws the sections of the findings until they have [`MAX_SECTION_BYTES`].
+fn sections(assembly: &Assembly, listed: &[AuditedPair]) -> Vec<String> {
+    let mut all = Vec::new();
+    let mut bytes = 0;
+    for pairs in listed.chunks(SECTIONS_AT_A_TIME) {
+        if bytes > MAX_SECTION_BYTES {
+            break;
+        }
+        let first = all.len();
+        let draw = |(k, pair): (usize, &AuditedPair)| {
+            let [a, b] = names(assembly, pair);
+            let solids = pair.parts.map(|part| assembly.parts()[part].solid());
+            let label = format!("Section of {a} and {b}");
+            let name = format!("cut-{}", first + k);
+            pair_cut(assembly, pair).section(
+                solids,
+                assembly.unit().unwrap_or_default(),
+                &name,
+                &label,
+            )
+        };
+        let drawn: Vec<String> = pairs.par_iter().enumerate().map(draw).collect();
+        bytes += drawn.iter().map(String::len).sum::<usize>();
+        all.extend(drawn);
+    }
+    all
+}
+
+/// Returns the viewer with the parts of the worst findings, as far as the page permits.
+fn viewer(assembly: &Assembly, listed: &[AuditedPair]) -> Markup {
+    let mut shown = BTreeSet::new();
+    let mut triangles = 0;
+    let mut add = |part: usize| {
+        let more = assembly.parts()[part].solid().triangles().len();
+        if !shown.contains(&part) && triangles + more <= viewer::MAX_TRIANGLES {
+            triangles += more;
+            shown.insert(part);
+        }
+    };
+    listed.iter().flat_map(|pair| pair.parts).for_each(&mut add);
+    // The other parts are the surroundings.
+    (0..assembly.parts().len()).for_each(&mut add);
+    let Aabb { low, high } = assembly.bounds();
+    let (middle, size) = ((low + high) / 2.0, (high - low).length());
+    let index = |part: &usize| shown.iter().position(|other| other == part);
+    let clashes = listed.iter().map(|pair| {
+        let [Some(a), Some(b)] = pair.parts.each_ref().map(index) else { return Value::Null };
+        let mut clash = clash_view(assembly, pair);
+        clash["parts"] = json!([a, b]);
+        clash
+    });
+    let parts = shown.iter().map(|&k| {
+        let part = &assembly.parts()[k];
+        viewer::part_data(part, part.colour().unwrap_or_else(|| kind_colour(k)), middle)
+    });
+    let data = json!({
+        "unit": assembly.unit().unwrap_or_default(),
+        "size": size,
+        "parts": parts.collect::<Vec<_>>(),
+        "clashes": clashes.collect::<Vec<_>>(),
+    });
+    html! {
+        div id="viewer" {}
+        script type="application/json" id="viewer-data" { (viewer::script_data(&data)) }
+    }
+}
+
+/// Returns what a viewer shows of a finding: `parts`, a `line` between the nearest points or along the least way out
+/// (`parts_by_moving`), and the `radius` of its neighbourhood. Points are relative to the middle of the assembly.
+pub fn clash_view(assembly: &Assembly, pair: &AuditedPair) -> Value {
+    let Aabb { low, high } = assembly.bounds();
+    let middle = (low + high) / 2.0;
+    let Cut { at, radius, .. } = pair_cut(assembly, pair);
+    let ends = match (way_out(pair), pair.finding.nearest()) {
+        (Some(way), _) => [at, at + way],
+        (None, Some(nearest)) => nearest.points,
+        (None, None) => [at; 2],
+    };
+    json!({
+        "parts": pair.parts,
+        "line": ends.map(|end| (end - middle).to_array()),
+        "parts_by_moving": way_out(pair).is_some(),
+        "radius": radius,
+    })
+}
+
+/// Returns the shortest displacement of the first part that was found to separate a pair; `None` if the pair does not
+/// interfere.
+fn way_out(pair: &AuditedPair) -> Option<DVec3> {
+    let way = pair.finding.interference().map(|found| found.depth.translation);
+    way.filter(|way| way.is_finite())
+}
+
+/// Returns the plane through the place of a finding.
+pub(super) fn pair_cut(assembly: &Assembly, pair: &AuditedPair) -> Cut {
+    let boxes = pair.parts.map(|part| assembly.parts()[part].bounds());
+    let (interference, nearest) = (pair.finding.interference(), pair.finding.nearest());
+    let at = pair.finding.place();
+    let measure = match (way_out(pair), nearest) {
+        (Some(way), _) => {
+            let label = length_text(way.length(), assembly);
+            Some(Measure { ends: [DVec3::ZERO, way], is_arrow: true, label })
+        }
+        (None, Some(found)) => {
+            let label = match pair.finding {
+                PairFinding::Touching(_) => String::new(),
+                _ => bounds_text(found.distance, assembly.unit().unwrap_or_default()),
+            };
+            Some(Measure { ends: found.points.map(|point| point - at), is_arrow: false, label })
+        }
+        (None, None) => None,
+    };
+    let common = interference.and_then(|found| found.common.bounds);
+    Cut::new(boxes, at, common, measure, assembly.up())
+}
+
+/// Returns the names of both parts.
+pub(super) fn names<'a>(assembly: &'a Assembly, pair: &AuditedPair) -> [&'a str; 2] {
+    pair.parts.map(|part| assembly.parts()[part].name())
+}
+
+/// Returns the number that ranks a finding, with its name.
+pub(super) fn headline(assembly: &Assembly, pair: &AuditedPair) -> String {
+    let unit = assembly.unit().unwrap_or_default();
+    match (pair.finding.interference(), &pair.finding) {
+        (Some(found), _) => format!("depth {}", bounds_text(found.depth.bounds(), unit)),
+        (None, PairFinding::Touching(_)) => "in contact".into(),
+        (None, finding) => {
+            let distance = finding.nearest().map_or([0.0; 2], |found| found.distance);
+            format!("distance {}", bounds_text(distance, unit))
+        }
+    }
+}
+
+/// Returns all numbers of a finding.
+pub(super) fn facts(assembly: &Assembly, pair: &AuditedPair) -> Vec<Fact> {
+    let unit = assembly.unit().unwrap_or_default();
+    let [a, _] = names(assembly, pair);
+    let mut facts = Vec::new();
+    let mut push = |name, value| facts.push(Fact { name, value });
+    if let PairFinding::Contained { inner, .. } = &pair.finding {
+        push("inside the other part", assembly.parts()[*inner].name().to_owned());
+    }
+    if let Some(found) = pair.finding.interference() {
+        push("depth", bounds_text(found.depth.bounds(), unit));
+        let way = direction_name(found.depth.direction);
+        push(
+            "shortest way out found",
+            format!("{a} by {} along {way}", length_text(found.depth.upper, assembly)),
+        );
+        let cubic = if unit.is_empty() { String::new() } else { format!("{unit}³") };
+        push("common volume", bounds_text(found.common.volume, &cubic));
+    }
+    if let Some(found) = pair.finding.nearest() {
+        push("distance", bounds_text(found.distance, unit));
+    }
+    let [x, y, z] = pair.finding.place().to_array().map(short_number);
+    push("place", with_unit(&format!("({x}, {y}, {z})"), unit));
+    push("required clearance", length_text(pair.clearance, assembly));
+    push("tolerance", length_text(pair.tolerance, assembly));
+    if let Some(role) = assembly.pair_fit(pair.parts[0], pair.parts[1]).and_then(|fit| fit.role) {
+        push("role", role.name().into());
+    }
+    facts
+}
+
+/// Formats a length in the unit of the assembly.
+fn length_text(length: f64, assembly: &Assembly) -> String {
+    with_unit(&short_number(length), assembly.unit().unwrap_or_default())
+}
+
+/// Formats bounds with four digits: as one number if both round to it, otherwise rounded outwards.
+fn bounds_text([lower, upper]: [f64; 2], unit: &str) -> String {
+    let (from, to) = (short_number(lower), short_number(upper));
+    if from == to {
+        return with_unit(&from, unit);
+    }
+    let outwards = |x: f64, round: fn(f64) -> f64| {
+        let scale = 10_f64.powf(3.0 - x.abs().log10().floor());
+        let rounded = round(x * scale) / scale;
+        short_number(if rounded.is_finite() { rounded } else { x })
+    };
+    with_unit(&format!("{} to {}", outwards(lower, f64::floor), outwards(upper, f64::ceil)), unit)
+}
+
+/// Appends a unit, if there is one.
+fn with_unit(number: &str, unit: &str) -> String {
+    format!("{number} {unit}").trim_end().into()
+}

@@ -1,12 +1,13 @@
 // The assembly tab, loaded on demand: several parts, which of them block which along the arrow, the removal map of a
-// part, and the disassembly plan.
+// part, the disassembly plan, and the pairs that overlap or are too close.
 //
-// Data flow: files -> the library in a worker (parts, fit, plan) -> `Parts`, `Player` and `Sphere`. Another assembly
+// Data flow: files -> the library in a worker (parts, fit, plan, audit) -> `Parts`, `Player`, `Sphere` and `Marker`. Another assembly
 // gets another worker, so that the memory of the last one is freed.
 
 import { Group, MeshLambertMaterial, Vector3 } from "three";
 import { aim, onPage, rounded } from "./aim";
-import type { PageAlong, PageFit, PageParts, PagePlan } from "./answers";
+import type { PageAlong, PageAudit, PageFit, PageParts, PagePlan } from "./answers";
+import { Marker, wayOut } from "./assembly/clashes";
 import { type Move, Parts, tint } from "./assembly/parts";
 import { Player } from "./assembly/player";
 import { type RemovalMap, Sphere } from "./assembly/sphere";
@@ -28,6 +29,8 @@ const EXAMPLE = "gearbox_small";
 const AXES: Vec[] = [[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]];
 /** Maximum number of parts for which a plan is computed without a request. */
 const SOON = 40;
+/** Maximum number of listed clashes. */
+const MOST_CLASHES = 200;
 
 export class AssemblyTab {
   readonly panel = h("div", { class: "assembly-panel" });
@@ -38,6 +41,12 @@ export class AssemblyTab {
   private readonly fitCard = h("div");
   private readonly mapCard = h("div");
   private readonly planCard = h("div");
+  private readonly clashCard = h("div");
+  private readonly within = h("input", { type: "number", step: "any", min: 0, value: 0, "aria-label": "Clearance", inputmode: "decimal" });
+  private readonly clashFields = [
+    h("label", {}, "Clearance that every pair needs (0: list overlaps and contacts)", this.within),
+    h("div", { class: "row" }, h("button", { class: "small main", onclick: () => void this.askAudit() }, "Find clashes")),
+  ];
   private readonly fields: HTMLInputElement[];
   private readonly tolerance = h("input", { type: "number", step: "any", min: 0, "aria-label": "Tolerance of the assembly", inputmode: "decimal" });
   private readonly ignore = h("input", { type: "checkbox" });
@@ -48,6 +57,7 @@ export class AssemblyTab {
   private readonly player = new Player((t) => this.seen?.place(this.moves, t));
   private readonly sphere: Sphere | undefined;
   private readonly seen: Parts | undefined;
+  private readonly marker: Marker | undefined;
   private readonly arrow = new Group();
   private engine: Engine;
   private files: { name: string; bytes: ArrayBuffer }[] = [];
@@ -57,6 +67,9 @@ export class AssemblyTab {
   private along: PageAlong | undefined;
   private map: RemovalMap | undefined;
   private plan: PagePlan | undefined;
+  private audit: PageAudit | undefined;
+  /** Index of the clash that is shown; -1 for none. */
+  private clash = -1;
   private moves: Move[] = [];
   private error = "";
   private busy = "";
@@ -99,6 +112,7 @@ export class AssemblyTab {
     try {
       this.seen = new Parts(this.view);
       this.sphere = new Sphere(this.seen.camera);
+      this.marker = new Marker(this.seen);
       this.arrange(this.seen, this.sphere);
     } catch (error) {
       this.view.append(h("p", { class: "lone", role: "alert" },
@@ -115,7 +129,7 @@ export class AssemblyTab {
     seen.scene.add(this.arrow);
     seen.onClick = (part) => this.pick(part < 0 ? null : part);
     seen.onRender = () => sphere.draw();
-    const ends = () => (this.facts ? { base: new Vector3(), tip: this.tip() } : undefined);
+    const ends = () => (this.facts && this.clash < 0 ? { base: new Vector3(), tip: this.tip() } : undefined);
     aim(seen.renderer.domElement, seen.camera, seen.orbit, ends, (way) => this.turnTo(rounded(way, 0.003)));
     sphere.onDirection = (d) => this.turnTo(rounded(d, 1e-4));
     this.stage.append(h("div", { class: "group assembly-tools" },
@@ -140,6 +154,7 @@ export class AssemblyTab {
           axis("+x", [1, 0, 0]), axis("−x", [-1, 0, 0]), axis("+y", [0, 1, 0]), axis("−y", [0, -1, 0]), axis("+z", [0, 0, 1]), axis("−z", [0, 0, -1]))),
       card("Removal map", this.mapCard),
       card("Disassembly plan", this.planCard),
+      card("Clashes", this.clashCard),
       card("Fit", this.fitCard),
     ];
   }
@@ -237,8 +252,8 @@ export class AssemblyTab {
     // An address may name a part that does not exist.
     if (this.asked.part !== null && !this.facts.parts[this.asked.part]) this.asked.part = null;
     const turn = ++this.turn;
-    [this.fit, this.along, this.map, this.plan, this.moves, this.error] = [undefined, undefined, undefined, undefined, [], ""];
-    this.player.show([], "");
+    [this.fit, this.along, this.map, this.plan, this.audit, this.error] = [undefined, undefined, undefined, undefined, undefined, ""];
+    this.pickClash(-1);
     const { tolerance, ignore } = this.asked;
     this.wait("Searching for overlaps and contacts");
     this.remember();
@@ -320,21 +335,8 @@ export class AssemblyTab {
     try {
       const { facts } = await this.engine.ask({ do: "plan" });
       if (turn !== this.turn || !this.facts) return;
-      const plan = (this.plan = facts);
-      const { size, middle, unit: of } = this.facts;
-      const places = new Map(this.facts.parts.map(({ name }, k) => [name, k]));
-      this.moves = plan.plan.map(({ path, back = [] }) => [...path, ...back].map((leg, l) => {
-        // The parts of a step leave with the last move of its path.
-        const leaves = l === path.length - 1;
-        const moved = { parts: leg.parts.map((name) => places.get(name)!), way: times(leg.direction, leg.travel + (leaves ? 0.35 * size : 0)) };
-        if (!leg.turn) return moved;
-        // Parts are shown relative to the middle of the assembly.
-        const { point, axis, aside, phase, turns } = leg.turn, at = sub(point, middle);
-        return { ...moved, turn: { own: sub(at, aside), point: at, axis, phase, turns } };
-      }));
-      this.player.show(
-        plan.plan.map(({ parts, path, direction, travel }) => `${parts.join(", ")} ${severally(path)}along ${arrow(direction)}${travel ? `, ${short(travel, 4)} ${of ?? ""}` : ""}`),
-        `${this.facts.parts.length} parts, ${plan.plan.length} steps; point at a part for its name.`);
+      this.plan = facts;
+      if (this.clash < 0) this.playPlan();
     } catch (error) {
       if (turn === this.turn) this.refuse(error);
     } finally {
@@ -343,14 +345,70 @@ export class AssemblyTab {
     this.show();
   }
 
-  /** Downloads the printable report. */
-  private async report() {
+  /** Plays the plan, if there is one. */
+  private playPlan() {
+    const { plan, facts } = this;
+    this.moves = [];
+    if (!plan || !facts) return this.player.show([], "");
+    const { size, middle, unit: of } = facts;
+    const places = new Map(facts.parts.map(({ name }, k) => [name, k]));
+    this.moves = plan.plan.map(({ path, back = [] }) => [...path, ...back].map((leg, l) => {
+      // The parts of a step leave with the last move of its path.
+      const leaves = l === path.length - 1;
+      const moved = { parts: leg.parts.map((name) => places.get(name)!), way: times(leg.direction, leg.travel + (leaves ? 0.35 * size : 0)) };
+      if (!leg.turn) return moved;
+      // Parts are shown relative to the middle of the assembly.
+      const { point, axis, aside, phase, turns } = leg.turn, at = sub(point, middle);
+      return { ...moved, turn: { own: sub(at, aside), point: at, axis, phase, turns } };
+    }));
+    this.player.show(
+      plan.plan.map(({ parts, path, direction, travel }) => `${parts.join(", ")} ${severally(path)}along ${arrow(direction)}${travel ? `, ${short(travel, 4)} ${of ?? ""}` : ""}`),
+      `${facts.parts.length} parts, ${plan.plan.length} steps; point at a part for its name.`);
+  }
+
+  /** Finds the pairs that overlap, touch, or are nearer than the clearance. */
+  private async askAudit() {
+    if (!this.fit) return;
     const turn = this.turn;
-    this.wait("Drawing a page for each step");
+    this.wait("Searching for clashes");
     try {
-      const { numbers } = await this.engine.ask({ do: "report", title: this.source });
+      const { facts } = await this.engine.ask({ do: "audit", within: Math.max(0, this.within.valueAsNumber || 0) });
       if (turn !== this.turn) return;
-      save(new Blob([numbers], { type: "text/html" }), "report.html");
+      this.audit = facts;
+      this.pickClash(facts.audit.pairs.length ? 0 : -1);
+    } catch (error) {
+      if (turn === this.turn) this.refuse(error);
+    } finally {
+      if (turn === this.turn) this.wait("");
+    }
+  }
+
+  /** Shows a clash with its least way out; -1 for the whole assembly and its plan. */
+  private pickClash(k: number) {
+    const view = this.audit?.views[k];
+    if (this.clash >= 0 && !view) this.seen?.fit();
+    this.clash = view ? k : -1;
+    this.arrow.visible = !view;
+    if (view) {
+      this.moves = wayOut(view);
+      this.player.show(
+        this.moves.map(() => `the least way out that was found, of ${this.name(view.parts[0])}`),
+        `${view.parts.map((part) => this.name(part)).join(" and ")}; point at a part for its name.`);
+    } else {
+      this.playPlan();
+    }
+    this.marker?.show(view);
+    this.show();
+  }
+
+  /** Downloads the printable report of the plan, or that of the clashes. */
+  private async report(of: "report" | "clashes") {
+    const turn = this.turn;
+    this.wait(of === "report" ? "Drawing a page for each step" : "Drawing a section for each pair");
+    try {
+      const { numbers } = await this.engine.ask({ do: of, title: this.source });
+      if (turn !== this.turn) return;
+      save(new Blob([numbers], { type: "text/html" }), `${of}.html`);
     } catch (error) {
       if (turn === this.turn) this.refuse(error);
     } finally {
@@ -382,6 +440,7 @@ export class AssemblyTab {
   private pick(part: number | null) {
     this.asked.part = part;
     this.map = undefined;
+    if (this.clash >= 0) this.pickClash(-1);
     this.show();
     this.remember();
     if (part !== null) this.askMap().catch((error: unknown) => this.refuse(error));
@@ -414,7 +473,9 @@ export class AssemblyTab {
     this.showFit();
     this.showMap();
     this.showPlan();
+    this.showClashes();
     this.showArrow();
+    if (this.clash >= 0) return;
     const { part } = asked;
     const met = part === null ? undefined : this.along?.closures[part];
     this.seen?.fade((k) => (met !== undefined && !met.includes(this.name(k)) ? 0.22 : 1));
@@ -537,7 +598,33 @@ export class AssemblyTab {
     refill(this.planCard,
       h("p", { class: "proof" }, `${plan.directions} directions were tested for all parts; each step was checked again, pair by pair.`),
       h("ol", {}, ...rows), ...remains, ...stuck,
-      h("div", { class: "row" }, h("button", { class: "small", disabled: !!this.busy, onclick: () => void this.report() }, "Download report.html"), h("small", {}, "one page for each step, for printing")));
+      h("div", { class: "row" }, h("button", { class: "small", disabled: !!this.busy, onclick: () => void this.report("report") }, "Download report.html"), h("small", {}, "one page for each step, for printing")));
+  }
+
+  private showClashes() {
+    const { audit: found, facts } = this;
+    if (!facts) return;
+    const audit = found?.audit;
+    const of = facts.unit ?? "";
+    const rows = audit?.pairs.slice(0, MOST_CLASHES).map((pair, k) => h("button", {
+      class: `part ${pair.violation ? "overlapping" : ""}`, "aria-pressed": String(k === this.clash), onclick: () => this.pickClash(k === this.clash ? -1 : k),
+    }, h("i", { style: `background: ${pair.violation ? palette().normal : "none"}` }), h("strong", {}, pair.parts.join(" · ")), h("span", {}, measure(pair, of)))) ?? [];
+    const more = (audit?.pairs.length ?? 0) - rows.length;
+    refill(this.clashCard,
+      ...this.clashFields,
+      ...(audit ? [
+        h("p", { class: "proof", id: "clashes-found" }, summary(audit.counts)),
+        h("div", { class: "parts" }, ...rows),
+        ...(more > 0 ? [h("small", {}, `and ${more} more, which the report lists`)] : []),
+        h("div", { class: "row" },
+          h("button", { class: "small", disabled: !!this.busy, onclick: () => void this.report("clashes") }, "Download clashes.html"),
+          h("button", { class: "small", onclick: () => this.copy(this.asAudit(audit.within), "The command") }, "Copy as command line")),
+      ] : []));
+  }
+
+  private asAudit(within: number): string {
+    const { tolerance } = this.asked;
+    return ["colltrans", "audit", quoted(this.source), `--within=${within}`, ...(tolerance === null ? [] : [`--tolerance=${tolerance}`])].join(" ");
   }
 
   /** Returns the tip of the arrow. */
@@ -558,9 +645,9 @@ export class AssemblyTab {
 
   /** State for tests. */
   probe() {
-    const { facts, fit, along, map, plan, engine, busy, error } = this;
+    const { facts, fit, along, map, plan, audit, clash, engine, busy, error } = this;
     const tip = this.seen && onPage(this.seen.renderer.domElement, this.seen.camera, this.tip());
-    return { facts, fit, along, map, plan, engine, busy, error, tip, t: this.player.t };
+    return { facts, fit, along, map, plan, audit, clash, engine, busy, error, tip, t: this.player.t };
   }
 }
 
@@ -575,6 +662,23 @@ function overlapping(fit: PageFit | undefined): { pairs: string; count: number }
   const remaining = fit?.overlaps.filter(({ remains }) => remains) ?? [];
   const pairs = remaining.slice(0, 6).map(({ parts, least_tolerance: depth }) => `${parts.join(" and ")}${depth === null ? "" : ` (${short(depth, 3)})`}`);
   return { pairs: `${pairs.join("; ")}${remaining.length > 6 ? "; …" : ""}`, count: remaining.length };
+}
+
+type Audit = PageAudit["audit"];
+
+/** Describes the numbers of pairs of an audit. */
+function summary({ violations, interfering, contained, touching, near }: Audit["counts"]): string {
+  const kinds = [[interfering, "interfering"], [contained, "one inside the other"], [touching, "touching"], [near, "nearer than the clearance"]] as const;
+  const each = kinds.filter(([count]) => count).map(([count, what]) => `${count} ${what}`);
+  return `${violations || "No"} ${violations === 1 ? "pair violates its" : violations ? "pairs violate their" : "pair violates its"} clearance${each.length ? `: ${each.join(", ")}` : ""}. Click a pair to see it.`;
+}
+
+/** Formats the number that ranks a pair. */
+function measure({ finding, depth, distance }: Audit["pairs"][number], of: string): string {
+  const bounds = depth ?? distance;
+  if (!bounds || finding === "touching") return finding;
+  const [from, to] = bounds.map((x) => (x === null ? "?" : short(x, 4)));
+  return `${finding === "apart" ? "distance" : finding} ${from === to ? from : `${from} to ${to}`} ${of}`;
 }
 
 const said = (error: unknown) => (error instanceof Error ? error.message : String(error));

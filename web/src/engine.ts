@@ -1,7 +1,7 @@
 // A library in a worker: takes questions and returns answers, in order.
 
 import type {
-  PageAdd, PageAlong, PageBody, PageCast, PageCertify, PageDistance, PageDraw, PageError, PageFit, PageLevels, PageLit, PageLoad,
+  PageAdd, PageAlong, PageAudit, PageBody, PageCast, PageCertify, PageDistance, PageDraw, PageError, PageFit, PageLevels, PageLit, PageLoad,
   PageMap, PageMotion, PageParts, PagePlace, PagePlan, PageProve, PageSearch, PageVerify, Separation,
 } from "./answers";
 import type { Pose, Vec } from "./math";
@@ -24,6 +24,8 @@ interface Answers {
   map: PageMap;
   plan: PagePlan;
   report: { title: string };
+  audit: PageAudit;
+  clashes: { title: string };
   draw: PageDraw;
   place: PagePlace;
   distance: PageDistance;

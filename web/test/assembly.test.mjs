@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { answers, boxes, data, drop, isCut, launchPlain, site, watch } from "../browser.mjs";
+import { answers, boxes, conform, data, drop, isCut, launchPlain, site, watch } from "../browser.mjs";
 
 const gearbox = join(data, "gearbox_small");
 
@@ -155,6 +155,32 @@ test("initial direction frees most parts, and overlaps are reported first", asyn
   await page.waitForSelector("#assembly-overlaps");
   assert.match(await page.textContent("#assembly-overlaps"), /^1 pair overlaps with this tolerance, and moves as one: cube and tray/);
   assert.equal(await page.locator(".assembly-panel .said.care").count(), 1);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("clashes are listed, shown and saved", async () => {
+  const page = await opened();
+  await drop(page, ".assembly-stage", { "a.off": boxes([[0, 0, 0], [2, 2, 2]]), "b.off": boxes([[1.5, 0.25, 0.25], [4, 1.75, 1.75]]), "c.off": boxes([[4.25, 0, 0], [6, 2, 2]]) });
+  await page.waitForFunction(() => window.colltrans.probe().assembly.facts?.parts.length === 3 && window.colltrans.probe().assembly.plan);
+  await page.fill('[aria-label="Clearance"]', "1");
+  await page.click("text=Find clashes");
+  await page.waitForSelector("#clashes-found");
+  assert.match(await page.textContent("#clashes-found"), /^2 pairs violate their clearance: 1 interfering, 1 nearer than the clearance/);
+  const told = await page.evaluate(() => window.colltrans.probe().assembly.audit);
+  conform("page_audit", told);
+  assert.deepEqual(told.views[0].parts, [0, 1]);
+  // The deepest pair is shown at once, with its way out.
+  assert.match(await page.textContent(".assembly-stage output"), /^a and b;/);
+  await page.locator('[aria-label="Steps of the plan"]').press("End");
+  assert.match(await page.textContent(".assembly-stage output"), /^Step 1 of 1: the least way out that was found, of a/);
+  await page.click(".part:has-text('b · c')");
+  assert.match(await page.textContent(".assembly-stage output"), /^b and c;/);
+  const [report] = await Promise.all([page.waitForEvent("download"), page.click("text=Download clashes.html")]);
+  assert.equal((await readFile(await report.path(), "utf8")).match(/<details class="clash"/g).length, 2);
+  // A second click returns to the plan.
+  await page.click(".part:has-text('b · c')");
+  assert.match(await page.textContent(".assembly-stage output"), /^3 parts, \d+ steps/);
   assert.deepEqual(page.complaints, []);
   await page.context().close();
 });

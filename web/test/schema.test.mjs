@@ -73,8 +73,9 @@ test("assemblies", () => {
   const questions = [
     ...names.map((name) => ({ do: "add", name, file: name })), { do: "parts" }, { do: "fit", tolerance: 0.1 }, { do: "along", direction: [0, 0, 1] },
     { do: "along", direction: [1, 0, 0] }, { do: "map", group: [0] }, { do: "plan" },
+    { do: "audit", within: 1 },
   ];
   const all = told("assembly", questions);
   assert.ok(all.every(({ error }) => error === undefined), JSON.stringify(all.find(({ error }) => error)));
-  assert.ok(all.at(-1).plan.length > 0);
+  assert.ok(all.at(-2).plan.length > 0 && all.at(-1).views.length > 0);
 });

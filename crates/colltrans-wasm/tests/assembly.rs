@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use colltrans_assembly::audit::{AuditOptions, audit, audit_json};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch};
 use colltrans_wasm::assembly::State;
@@ -104,6 +105,38 @@ fn map_equals_library_map() {
 }
 
 #[test]
+fn audit_equals_library_audit_and_has_a_report() {
+    let mut state = gearbox();
+    ask(&mut state, &json!({ "do": "parts" }), Vec::new());
+    // The precision of the files: press fits and rolling contacts overlap as drawn.
+    ask(&mut state, &json!({ "do": "fit" }), Vec::new());
+    let (told, _) = ask(&mut state, &json!({ "do": "audit", "within": 0.5 }), Vec::new());
+    let parts = files().into_iter().map(|file| {
+        let mesh = colltrans_mesh::read(&file).unwrap();
+        let piece = Piece { mesh, world_from_piece: DAffine3::IDENTITY };
+        Part::new(stem(&file), &[piece]).unwrap()
+    });
+    let assembly = Assembly::new(parts.collect()).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let options = AuditOptions::default().with_within(0.5).unwrap();
+    let found = audit(&bodies, &options, Watch::default()).unwrap();
+    let record = audit_json(&bodies, &options, &found);
+    assert_eq!(told["audit"], record);
+    assert!(found.pairs.len() > 20, "{:?}", found.counts);
+    let views = told["views"].as_array().unwrap();
+    assert_eq!(views.len(), found.pairs.len());
+    for (view, pair) in views.iter().zip(&found.pairs) {
+        assert_eq!(view["parts"], json!(pair.parts));
+        assert_eq!(view["parts_by_moving"], pair.finding.interference().is_some());
+        assert!(view["radius"].as_f64().unwrap() > 0.0);
+    }
+    let (_, page) = ask(&mut state, &json!({ "do": "clashes", "title": "Gears" }), Vec::new());
+    let page = String::from_utf8(page).unwrap();
+    assert_eq!(page.matches("<details class=\"clash\"").count(), found.pairs.len());
+    assert!(page.contains("<h1>Gears</h1>"));
+}
+
+#[test]
 fn invalid_questions_return_errors() {
     let mut state = State::default();
     let mut refused = |question: Value, file: &[u8], part: &str| {
@@ -129,6 +162,8 @@ fn invalid_questions_return_errors() {
     };
     refused(json!({ "do": "along", "direction": [0, 0, 0] }), "direction");
     refused(json!({ "do": "map", "group": [99] }), "99");
+    refused(json!({ "do": "clashes", "title": "" }), "no audit");
+    refused(json!({ "do": "audit", "within": -1 }), "clearance");
     refused(json!({ "do": "fit", "tolerance": -1 }), "invalid tolerance");
 }
 

@@ -210,7 +210,7 @@ mod tests {
         ] {
             assert_eq!(utc_text(seconds), text);
         }
-        assert!(utc_text(u64::MAX).ends_with("Z"));
+        assert!(utc_text(u64::MAX).ends_with('Z'));
     }
 
     #[test]

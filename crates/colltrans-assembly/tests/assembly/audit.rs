@@ -336,7 +336,8 @@ fn one_pair_has_the_finding_of_the_audit() {
 fn hostile_names_stay_in_their_cells() {
     let names = ["=1+1", "a,\"b\"\n<script>"];
     let parts = [cuboid([0.0; 3], [1.0; 3]), cuboid([0.5; 3], [2.0; 3])];
-    let parts = names.iter().zip(&parts).map(|(name, piece)| part(name, &[piece.clone()]));
+    let parts =
+        names.iter().zip(&parts).map(|(name, piece)| part(name, std::slice::from_ref(piece)));
     let assembly = Assembly::new(parts.collect()).unwrap();
     let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
     let found = audit(&bodies, &within(0.0), Watch::default()).unwrap();

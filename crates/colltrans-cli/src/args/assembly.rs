@@ -98,7 +98,7 @@ pub(crate) struct AuditArguments {
     pub(crate) report: Option<PathBuf>,
     /// Write the violations as issues in the BIM Collaboration Format, with pictures
     ///
-    /// Their time of creation is now, or SOURCE_DATE_EPOCH (seconds since 1970).
+    /// Their time of creation is now, or `SOURCE_DATE_EPOCH` (seconds since 1970).
     #[arg(long, value_name = "OUT.bcf")]
     pub(crate) bcf: Option<PathBuf>,
     /// List at most N pairs as text
@@ -138,6 +138,7 @@ fn clearance(text: &str) -> Result<Clearance, String> {
 /// How sources of assemblies are read.
 #[derive(Debug, Args)]
 #[command(next_help_heading = INPUT)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub(crate) struct InputArguments {
     /// STEP: distance of facets from the surfaces, about, in millimetres
     #[arg(long, value_name = "L", default_value_t = 0.05, allow_hyphen_values = true, value_parser = factor, hide_short_help = true)]

@@ -7,17 +7,20 @@
 //! - `along`: returns blockers and removable groups for a `direction`;
 //! - `map`: returns the free travel of the parts `group` in all directions;
 //! - `plan`: returns a disassembly plan;
-//! - `report`: returns the printable report of the plan, with a `title`.
+//! - `report`: returns the printable report of the plan, with a `title`;
+//! - `audit`: returns the pairs that interfere, touch, or are nearer than `within`;
+//! - `clashes`: returns the report of the last audit, with a `title`.
 
 use std::path::Path;
 
 use colltrans::solid::StartOverlap;
+use colltrans_assembly::audit::{Audit, AuditOptions, audit};
 use colltrans_assembly::candidates::{CandidateOptions, Candidates, find_candidates};
 use colltrans_assembly::liaisons::{Liaison, find_liaisons};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::ContactMatrix;
 use colltrans_assembly::plan::{Plan, PlanOptions};
-use colltrans_assembly::report::html;
+use colltrans_assembly::report::{clashes, html};
 use colltrans_assembly::sphere::normalized_direction;
 use colltrans_assembly::start::Start;
 use colltrans_assembly::{Analysis, AnalysisRequest, Assembly, Bodies, Fit, Part, Piece, Watch};
@@ -61,6 +64,7 @@ struct Fitted {
     start: StartOverlap,
     candidates: Candidates,
     plan: Option<Plan>,
+    audit: Option<(AuditOptions, Audit)>,
 }
 
 impl Answers for State {
@@ -87,6 +91,8 @@ impl State {
             "map" => self.map(&asked.list("group")?),
             "plan" => self.plan(),
             "report" => self.report(asked.text("title")?),
+            "audit" => self.audit(asked.number("within")?),
+            "clashes" => self.clashes(asked.text("title")?),
             other => Err(format!("unknown question {other}").into()),
         }
     }
@@ -164,7 +170,7 @@ impl State {
             find_candidates(&bodies, &touching, &CandidateOptions::default()).map_err(message)?;
         let answer = answers::fit_answer(&bodies, default.tolerance(), &start, &touching);
         let overlaps = if ignore { StartOverlap::Ignore } else { StartOverlap::Refuse };
-        set.fitted = Some(Fitted { bodies, start: overlaps, candidates, plan: None });
+        set.fitted = Some(Fitted { bodies, start: overlaps, candidates, plan: None, audit: None });
         Ok(answer)
     }
 
@@ -219,6 +225,26 @@ impl State {
         let found = plan_options(*start).analyse_without_plan(bodies, Watch::default());
         let found = Analysis { plan, ..found.map_err(|error| error.to_string())? };
         let page = html::report_page(&found, title).into_bytes();
+        Ok(Answer { numbers: page, ..Answer::from_facts(&json!({ "title": title })) })
+    }
+
+    fn audit(&mut self, within: Option<f64>) -> Result<Answer, Refusal> {
+        let Fitted { bodies, audit: last, .. } = self.fitted()?;
+        let options = AuditOptions::default().with_within(within.unwrap_or_default());
+        let options = options.map_err(|error| error.to_string())?;
+        let found = audit(bodies, &options, Watch::default()).map_err(|error| error.to_string())?;
+        let answer = answers::audit_answer(bodies, &options, &found);
+        *last = Some((options, found));
+        Ok(answer)
+    }
+
+    /// Returns the report of the last audit; its bytes are the numbers of the answer.
+    fn clashes(&mut self, title: &str) -> Result<Answer, Refusal> {
+        let Fitted { bodies, audit, .. } = self.fitted()?;
+        let Some((options, found)) = audit else {
+            return Err("there is no audit yet; ask for an audit first".to_owned().into());
+        };
+        let page = clashes::clashes_page(bodies, options, found, title).into_bytes();
         Ok(Answer { numbers: page, ..Answer::from_facts(&json!({ "title": title })) })
     }
 }

@@ -97,16 +97,15 @@ impl AuditOptions {
         Self { allow_contact, ..self }
     }
 
-    /// Returns the required clearance of a pair. It is 0 for pairs with a role or tolerance of their own.
+    /// Returns the required clearance of a pair. It is 0 for pairs with a role or tolerance of their own, unless a level
+    /// covers them.
     fn clearance(&self, assembly: &Assembly, [a, b]: [usize; 2]) -> f64 {
-        if assembly.pair_fit(a, b).is_some() {
-            return 0.0;
-        }
+        let general = if assembly.pair_fit(a, b).is_some() { 0.0 } else { self.within };
         let covers = |level: &&ClearanceLevel| {
             let has = |group: usize, part| level.groups[group].binary_search(&part).is_ok();
             has(0, a) && has(1, b) || has(0, b) && has(1, a)
         };
-        self.levels.iter().rev().find(covers).map_or(self.within, |level| level.length)
+        self.levels.iter().rev().find(covers).map_or(general, |level| level.length)
     }
 
     /// Returns the largest clearance.
@@ -132,6 +131,18 @@ pub struct Interference {
     pub least_tolerance: Option<f64>,
     /// Point inside both parts; if none was found, a point of both, in the world.
     pub place: DVec3,
+}
+
+impl Interference {
+    /// Returns the depth; `None` if it is unknown, as for open surfaces.
+    pub fn known_depth(&self) -> Option<&SolidDepth> {
+        Some(&self.depth).filter(|depth| depth.upper > 0.0 && depth.upper.is_finite())
+    }
+
+    /// Returns bounds of the common volume; `None` if the depth is unknown.
+    pub fn known_volume(&self) -> Option<[f64; 2]> {
+        self.known_depth().map(|_| self.common.volume)
+    }
 }
 
 /// The distance of two surfaces.
@@ -254,7 +265,7 @@ pub struct AuditCounts {
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Audit {
-    /// Pairs that interfere, touch, or are nearer than their clearance, the worst first.
+    /// Pairs that interfere, touch, or are nearer than their clearance: violations first, and of these the worst.
     pub pairs: Vec<AuditedPair>,
     /// Numbers of pairs.
     pub counts: AuditCounts,
@@ -290,10 +301,11 @@ pub fn audit(
     let part_pairs = |a: usize| {
         let mut counts = AuditCounts::default();
         let mut near = tree.intersecting(&boxes[a].expanded(reach + slack));
+        near.retain(|&b| b > a);
         near.retain(|&b| {
             let pair = [a, b];
             let reach = options.clearance(bodies.assembly(), pair).max(bodies.pair_tolerance(pair));
-            b > a && boxes[a].expanded(reach + slack).intersects(&boxes[b])
+            boxes[a].expanded(reach + slack).intersects(&boxes[b])
         });
         let candidates = near.len();
         near.retain(|&b| {
@@ -324,7 +336,11 @@ pub fn audit(
         audit.counts.ignored += counts.ignored;
         audit.pairs.append(&mut pairs);
     }
-    audit.pairs.sort_by(|x, y| x.finding.cmp_severity(&y.finding).then(x.parts.cmp(&y.parts)));
+    audit.pairs.sort_by(|x, y| {
+        let violations_first = y.is_violation.cmp(&x.is_violation);
+        let severity = violations_first.then_with(|| x.finding.cmp_severity(&y.finding));
+        severity.then(x.parts.cmp(&y.parts))
+    });
     for pair in &audit.pairs {
         audit.counts.violations += usize::from(pair.is_violation);
         *match pair.finding {
@@ -352,9 +368,12 @@ pub fn examine_pair(
         AssemblyError::Query { a, b, source }
     })?;
     let clearance = options.clearance(bodies.assembly(), parts);
+    // Pairs with a role or tolerance of their own are meant to touch.
+    let may_touch =
+        options.allow_contact || bodies.assembly().pair_fit(parts[0], parts[1]).is_some();
     let is_violation = match &finding {
         PairFinding::Interfering(_) | PairFinding::Contained { .. } => true,
-        PairFinding::Touching(_) if options.allow_contact => false,
+        PairFinding::Touching(_) if may_touch => false,
         PairFinding::Touching(found) | PairFinding::Apart(found) => found.distance[1] < clearance,
     };
     let tolerance = bodies.pair_tolerance(parts);
@@ -373,15 +392,19 @@ fn pair_finding(
     let tolerance = bodies.pair_tolerance(parts);
     let may_cross = bodies.tolerated_contacts(parts) == Some(PairTolerance::Crossing);
     let overlaps = bodies.overlaps(parts[0], parts[1]);
-    // The distance of the surfaces is not needed for bodies that interfere.
-    let surfaces = if overlaps && !may_cross { None } else { Some(pair.surface_distance()?) };
-    let is_inside = |found: &SurfaceDistance| {
-        matches!(found.place, Some(Overlap::MovingInside(_) | Overlap::FixedInside(_)))
+    // Open surfaces are not shrunk.
+    let crosses_sheet = overlaps && of.iter().any(|part| part.is_surface());
+    // The distance of the surfaces is not needed for closed bodies that interfere.
+    let is_needed = may_cross || !overlaps || crosses_sheet;
+    let surfaces = if is_needed { Some(pair.surface_distance()?) } else { None };
+    let may_interfere = |found: &SurfaceDistance| match found.place {
+        Some(Overlap::Facets(..)) => crosses_sheet && !separates_within(bodies, parts, found),
+        place => place.is_some(),
     };
-    if !may_cross && surfaces.as_ref().is_none_or(is_inside) {
+    if !may_cross && surfaces.as_ref().is_none_or(may_interfere) {
         let depth = pair.depth()?;
         // Open surfaces have no depth.
-        if depth.upper > tolerance || overlaps && of.iter().any(|part| part.is_surface()) {
+        if depth.upper > tolerance || crosses_sheet {
             let common = pair.common_part(volume)?;
             let inner = match common.relation {
                 Relation::MovingContained => Some(0),
@@ -392,10 +415,14 @@ fn pair_finding(
             let least_tolerance = bodies.least_tolerance(parts[0], parts[1]).flatten();
             let found = Interference { depth, common, least_tolerance, place };
             let interference = Box::new(found);
-            return Ok(match inner {
-                Some(side) => PairFinding::Contained { inner: parts[side], interference },
-                None => PairFinding::Interfering(interference),
-            });
+            match (inner, common.relation) {
+                (Some(side), _) => {
+                    return Ok(PairFinding::Contained { inner: parts[side], interference });
+                }
+                // Open surfaces nearer than a minimum gap overlap without a common point of their interiors.
+                (None, Relation::Disjoint | Relation::Touching(_)) => {}
+                (None, _) => return Ok(PairFinding::Interfering(interference)),
+            }
         }
     }
     let found = surfaces.map_or_else(|| pair.surface_distance(), Ok)?;
@@ -403,6 +430,23 @@ fn pair_finding(
         Nearest { distance: [found.lower, found.upper], points: [found.on_moving, found.on_fixed] };
     let touches = found.place.is_some() || found.lower <= tolerance;
     Ok(if touches { PairFinding::Touching(nearest) } else { PairFinding::Apart(nearest) })
+}
+
+/// Checks whether a translation by the tolerance of a pair, along an axis or the normal of a facet in contact, separates
+/// both parts.
+fn separates_within(bodies: &Bodies, parts: [usize; 2], found: &SurfaceDistance) -> bool {
+    let normals = [0, 1].map(|k| {
+        let solid = bodies.assembly().parts()[parts[k]].solid();
+        let corners = solid.triangles()[found.triangles[k] as usize];
+        let [a, b, c] = corners.map(|v| solid.vertices()[v as usize]);
+        (b - a).cross(c - a).normalize_or_zero()
+    });
+    let tolerance = bodies.pair_tolerance(parts);
+    normals.into_iter().chain(DVec3::AXES).any(|way| {
+        [tolerance, -tolerance]
+            .iter()
+            .any(|by| !bodies.overlaps_displaced(parts[0], way * *by, parts[1]))
+    })
 }
 
 /// Returns a point of two bodies: of the surface of the inner one, or else of both surfaces.

@@ -8,7 +8,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use colltrans_assembly::audit::{
     Audit, AuditCounts, AuditOptions, AuditedPair, PairFinding, audit, audit_csv, audit_json,
 };
-use colltrans_assembly::report::bcf::bcf_file;
+use colltrans_assembly::report::bcf::{MAX_TOPICS, bcf_file};
 use colltrans_assembly::report::clashes::clashes_page;
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
 
@@ -33,6 +33,7 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
     for path in [&arguments.csv, &arguments.report, &arguments.bcf].into_iter().flatten() {
         check_output_path(path, &inputs, "give the output another name")?;
     }
+    let created = if arguments.bcf.is_some() { creation_seconds()? } else { 0 };
     let fit = arguments.tolerance.map_or_else(|| Fit::default_for(&assembly), Fit::Tolerance);
     let bodies = Bodies::new(&assembly, fit)?;
     let bar = stage_bar();
@@ -42,7 +43,7 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
     for text in assembly.notes() {
         note(text);
     }
-    write_files(&bodies, &options, &found, arguments)?;
+    write_files(&bodies, &options, &found, arguments, created)?;
     if arguments.json {
         print_json(&format!("{}\n", audit_json(&bodies, &options, &found)))?;
     } else {
@@ -57,12 +58,13 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
     }
 }
 
-/// Writes the requested files.
+/// Writes the requested files. `created`, in seconds since 1970, is the time in a BCF file.
 fn write_files(
     bodies: &Bodies,
     options: &AuditOptions,
     found: &Audit,
     arguments: &AuditArguments,
+    created: u64,
 ) -> Result<(), Failure> {
     let (assembly, title) = (bodies.assembly(), source_title(&arguments.source));
     if let Some(csv) = &arguments.csv {
@@ -72,9 +74,12 @@ fn write_files(
         outputs::write(report, clashes_page(bodies, options, found, &title).as_bytes())?;
     }
     if let Some(path) = &arguments.bcf {
-        let bytes = bcf_file(assembly, found, &title, creation_seconds()?)
+        let bytes = bcf_file(assembly, found, &title, created)
             .map_err(|error| Failure::write_error(path.display(), &error))?;
         outputs::write(path, &bytes)?;
+        if found.counts.violations > MAX_TOPICS {
+            note(&format!("{} has the {MAX_TOPICS} worst violations", path.display()));
+        }
     }
     Ok(())
 }
@@ -148,8 +153,10 @@ pub(crate) fn finding_text(assembly: &Assembly, pair: &AuditedPair) -> String {
         PairFinding::Apart(found) => format!("{} apart", interval(found.distance)),
         finding => finding.name().to_owned(),
     };
-    if let Some(found) = pair.finding.interference().filter(|found| found.depth.upper > 0.0) {
-        let [depth, volume] = [found.depth.bounds(), found.common.volume].map(interval);
+    if let Some(found) = pair.finding.interference()
+        && let Some(depth) = found.known_depth()
+    {
+        let [depth, volume] = [depth.bounds(), found.common.volume].map(interval);
         let _ = write!(text, ", depth {depth}, volume {volume}");
     }
     let _ = write!(text, ", at {}", point(pair.finding.place(), 0.0, extent));

@@ -245,9 +245,11 @@ fn audit_row(pair: &AuditedPair) -> [f64; 18] {
     const NAN: DVec3 = DVec3::NAN;
     let (interference, nearest) = (pair.finding.interference(), pair.finding.nearest());
     let [dl, du] = nearest.map_or([f64::NAN; 2], |found| found.distance);
-    let [pl, pu] = interference.map_or([f64::NAN; 2], |found| found.depth.bounds());
-    let [vl, vu] = interference.map_or([f64::NAN; 2], |found| found.common.volume);
-    let [ox, oy, oz] = interference.map_or(NAN, |found| found.depth.translation).to_array();
+    let depth = interference.and_then(|found| found.known_depth());
+    let volume = interference.and_then(|found| found.known_volume());
+    let [pl, pu] = depth.map_or([f64::NAN; 2], |depth| depth.bounds());
+    let [vl, vu] = volume.unwrap_or([f64::NAN; 2]);
+    let [ox, oy, oz] = depth.map_or(NAN, |depth| depth.translation).to_array();
     let [x, y, z] = pair.finding.place().to_array();
     let [qx, qy, qz] = nearest.map_or(NAN, |found| found.points[1]).to_array();
     let least = interference.and_then(|found| found.least_tolerance).unwrap_or(f64::NAN);

@@ -2,9 +2,10 @@
 //!
 //! `colltrans help json` lists the fields, and `docs/answers.schema.json` defines them.
 
+use colltrans::solid::SolidDepth;
 use serde_json::{Value, json};
 
-use super::{Audit, AuditOptions, AuditedPair, PairFinding};
+use super::{Audit, AuditOptions, AuditedPair, Interference, PairFinding};
 use crate::bodies::Bodies;
 use crate::csv::{Cell, Table};
 use crate::part::{Assembly, Part};
@@ -50,10 +51,12 @@ fn pair_json(assembly: &Assembly, pair: &AuditedPair) -> Value {
     }
     if let Some(found) = pair.finding.interference() {
         let bounds = found.common.bounds.map(|b| [b.low.to_array(), b.high.to_array()]);
-        object["depth"] = json!(found.depth.bounds());
-        object["translation"] = json!(found.depth.translation.to_array());
+        if let Some(depth) = found.known_depth() {
+            object["depth"] = json!(depth.bounds());
+            object["translation"] = json!(depth.translation.to_array());
+            object["volume"] = json!(found.common.volume);
+        }
         object["least_tolerance"] = json!(found.least_tolerance);
-        object["volume"] = json!(found.common.volume);
         object["box"] = json!(bounds);
         object["point"] = json!(found.place.to_array());
     }
@@ -98,10 +101,11 @@ pub fn audit_csv(assembly: &Assembly, audit: &Audit) -> String {
             Cell::Number(pair.clearance),
         ];
         push_numbers(&mut row, nearest.map(|found| found.distance));
-        push_numbers(&mut row, interference.map(|found| found.depth.bounds()));
-        push_numbers(&mut row, interference.map(|found| found.depth.translation.to_array()));
+        let depth = interference.and_then(Interference::known_depth);
+        push_numbers(&mut row, depth.map(SolidDepth::bounds));
+        push_numbers(&mut row, depth.map(|depth| depth.translation.to_array()));
         push_numbers(&mut row, interference.and_then(|found| Some([found.least_tolerance?])));
-        push_numbers(&mut row, interference.map(|found| found.common.volume));
+        push_numbers(&mut row, interference.and_then(Interference::known_volume));
         push_numbers(&mut row, Some(pair.finding.place().to_array()));
         table.push_row(&row);
     }

@@ -5,6 +5,7 @@
 //! - Identifiers are UUIDs of version 8 (RFC 9562, 5.8): FNV-1a hashes of the names. Another audit of the same parts
 //!   has the same identifiers, so that programs can update their topics.
 //! - Lengths are in metres, as BCF requires. Lengths in an unknown unit are written unchanged.
+//! - The z axis points upwards. Coordinates of files in which the y axis does, such as glTF, are rotated about x.
 //!
 //! Reference: buildingSMART, BCF-XML 2.1, `markup.xsd` and `visinfo.xsd`.
 
@@ -29,6 +30,8 @@ use crate::units::unit_in_metres;
 const AUTHOR: &str = "colltrans";
 /// Angle of view of the camera in degrees, and the sine of half of it.
 const FIELD_OF_VIEW: (f64, f64) = (45.0, 0.382_683_432_365_09);
+/// Maximum number of topics, the worst. Programs that read BCF files expect fewer than 65,535 files in them.
+pub const MAX_TOPICS: usize = 10_000;
 /// Number of topics that are drawn at a time.
 const TOPICS_AT_A_TIME: usize = 64;
 /// First line of XML files.
@@ -42,7 +45,7 @@ struct Topic {
     snapshot: Vec<u8>,
 }
 
-/// Returns the violations of an audit as the bytes of a BCF file. `seconds` since 1970 is the time of creation in the
+/// Returns the violations of an audit, at most [`MAX_TOPICS`], as the bytes of a BCF file. `seconds` since 1970 is the time of creation in the
 /// topics, `title` names the model in the identifiers.
 ///
 /// # Errors
@@ -54,7 +57,7 @@ pub fn bcf_file(
     seconds: u64,
 ) -> io::Result<Vec<u8>> {
     let lines: Vec<OnceLock<Lines>> = assembly.parts().iter().map(|_| OnceLock::new()).collect();
-    let all: Vec<&AuditedPair> = audit.violations().collect();
+    let all: Vec<&AuditedPair> = audit.violations().take(MAX_TOPICS).collect();
     let mut file = ZipWriter::new(Cursor::new(Vec::new()));
     let mut put = |path: &str, bytes: &[u8]| {
         file.start_file(path, SimpleFileOptions::default())?;
@@ -116,18 +119,21 @@ fn topic(
     Topic {
         id,
         markup,
-        viewpoint: viewpoint(parts, &cut, &view, per_unit),
+        viewpoint: viewpoint(parts, &cut, &view, per_unit, assembly.up()),
         snapshot: cut.snapshot(solids, lines),
     }
 }
 
-/// Returns the viewpoint file: both parts selected and coloured, a camera, and the section plane.
-fn viewpoint(parts: [&str; 2], cut: &Cut, id: &str, per_unit: f64) -> String {
+/// Returns the viewpoint file: both parts selected and coloured, a camera, and the section plane. `upwards` is the
+/// vertical axis of the model.
+fn viewpoint(parts: [&str; 2], cut: &Cut, id: &str, per_unit: f64, upwards: DVec3) -> String {
     let Camera { toward, up, hidden } = cut.camera();
     let away = cut.radius / FIELD_OF_VIEW.1;
     let [a, b] = parts.map(component);
-    let [eye, at] = [(cut.at + toward * away) * per_unit, cut.at * per_unit].map(coordinates);
-    let [direction, up, hidden] = [-toward, up, hidden].map(coordinates);
+    let written =
+        |v: DVec3| coordinates(if upwards == DVec3::Y { DVec3::new(v.x, -v.z, v.y) } else { v });
+    let [eye, at] = [(cut.at + toward * away) * per_unit, cut.at * per_unit].map(written);
+    let [direction, up, hidden] = [-toward, up, hidden].map(written);
     let angle = FIELD_OF_VIEW.0;
     format!(
         "{XML}<VisualizationInfo Guid=\"{id}\">\n<Components>\n<Selection>\n{a}{b}</Selection>\n\

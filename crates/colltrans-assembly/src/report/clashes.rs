@@ -1,10 +1,10 @@
 //! The report of an audit: one HTML file with all findings, the worst first.
 //!
-//! - Each finding has its numbers and a section through its place ([`cut`](super::cut)).
+//! - Each finding has its numbers and a section through its place (module `cut`).
 //! - A click on a finding shows the pair in the viewer, and the least way out as a motion. The script also filters the
 //!   list. Without scripts the list is complete.
-//! - The file contains each part once. Sections and parts are limited by [`MAX_SECTION_BYTES`] and
-//!   [`MAX_TRIANGLES`](super::viewer::MAX_TRIANGLES); the worst findings come first.
+//! - The file contains each part once. Sections and parts are limited by `MAX_SECTION_BYTES` and
+//!   `viewer::MAX_TRIANGLES`; the worst findings come first.
 
 use std::collections::BTreeSet;
 
@@ -248,8 +248,7 @@ pub fn clash_view(assembly: &Assembly, pair: &AuditedPair) -> Value {
 /// Returns the shortest displacement of the first part that was found to separate a pair; `None` if the pair does not
 /// interfere.
 fn way_out(pair: &AuditedPair) -> Option<DVec3> {
-    let way = pair.finding.interference().map(|found| found.depth.translation);
-    way.filter(|way| way.is_finite())
+    pair.finding.interference()?.known_depth().map(|depth| depth.translation)
 }
 
 /// Returns the plane through the place of a finding.
@@ -284,7 +283,10 @@ pub(super) fn names<'a>(assembly: &'a Assembly, pair: &AuditedPair) -> [&'a str;
 pub(super) fn headline(assembly: &Assembly, pair: &AuditedPair) -> String {
     let unit = assembly.unit().unwrap_or_default();
     match (pair.finding.interference(), &pair.finding) {
-        (Some(found), _) => format!("depth {}", bounds_text(found.depth.bounds(), unit)),
+        (Some(found), _) => found.known_depth().map_or_else(
+            || "surfaces cross".into(),
+            |depth| format!("depth {}", bounds_text(depth.bounds(), unit)),
+        ),
         (None, PairFinding::Touching(_)) => "in contact".into(),
         (None, finding) => {
             let distance = finding.nearest().map_or([0.0; 2], |found| found.distance);
@@ -302,12 +304,14 @@ pub(super) fn facts(assembly: &Assembly, pair: &AuditedPair) -> Vec<Fact> {
     if let PairFinding::Contained { inner, .. } = &pair.finding {
         push("inside the other part", assembly.parts()[*inner].name().to_owned());
     }
-    if let Some(found) = pair.finding.interference() {
-        push("depth", bounds_text(found.depth.bounds(), unit));
-        let way = direction_name(found.depth.direction);
+    if let Some(found) = pair.finding.interference()
+        && let Some(depth) = found.known_depth()
+    {
+        push("depth", bounds_text(depth.bounds(), unit));
+        let way = direction_name(depth.direction);
         push(
             "shortest way out found",
-            format!("{a} by {} along {way}", length_text(found.depth.upper, assembly)),
+            format!("{a} by {} along {way}", length_text(depth.upper, assembly)),
         );
         let cubic = if unit.is_empty() { String::new() } else { format!("{unit}³") };
         push("common volume", bounds_text(found.common.volume, &cubic));

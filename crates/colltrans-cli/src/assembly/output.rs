@@ -236,6 +236,8 @@ fn removed_names(findings: &Analysis, stage: &Range<usize>) -> String {
 
 /// Number of names to which a longer list is shortened.
 const MAX_NAMES: usize = 12;
+/// Maximum number of overlaps at the start whose depth and volume are computed.
+const MOST_EXAMINED: usize = 64;
 
 /// Joins names. Of more than [`MAX_NAMES`] + 1 names only the first [`MAX_NAMES`] are listed, with the number of the
 /// others.
@@ -321,7 +323,7 @@ fn push_overlaps(text: &mut String, findings: &Analysis) {
             _ => "overlapping with this tolerance\n",
         });
     }
-    for o in &remaining {
+    for (k, o) in remaining.iter().enumerate() {
         let [a, b] = o.parts.map(|k| escape_line(findings.bodies.assembly().parts()[k].name()));
         let depth = match (o.depth, findings.bodies.fit()) {
             (None, _) => " by more than their size".into(),
@@ -331,10 +333,14 @@ fn push_overlaps(text: &mut String, findings: &Analysis) {
             }
             (Some(depth), _) => format!(" by {}", length_up(depth)),
         };
-        let found = examine_pair(findings.bodies, o.parts, &AuditOptions::default());
-        let finding = found
-            .map_or_else(escape_line, |found| finding_text(findings.bodies.assembly(), &found));
-        let _ = writeln!(text, "  {a}, {b}{depth}: {finding}");
+        let _ = write!(text, "  {a}, {b}{depth}");
+        if k < MOST_EXAMINED {
+            let found = examine_pair(findings.bodies, o.parts, &AuditOptions::default());
+            let finding = found
+                .map_or_else(escape_line, |found| finding_text(findings.bodies.assembly(), &found));
+            let _ = write!(text, ": {finding}");
+        }
+        text.push('\n');
     }
     if remaining.is_empty() && !findings.suggestions.is_empty() {
         text.push_str("possible reasons\n");

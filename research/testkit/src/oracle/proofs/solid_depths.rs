@@ -136,7 +136,8 @@ fn falsehood(file: &Value, _: CheckerKind) -> Option<String> {
     }
     let [[low, high], [least, most]] = [0, 1].map(|k| ends(&bodies.points[k]));
     let exits = (most - low).min(high - least);
-    let most = (exits.min_element() + bodies.radii.to_f64()).next_up();
+    // The exits of bodies that are apart may be negative.
+    let most = (exits.min_element() + bodies.radii.to_f64()).next_up().max(0.0);
     if lower < 0.0 || square(lower) > length || lower > most {
         return Some(format!("a depth of at least {lower:e}, along the axes {exits:?}"));
     }

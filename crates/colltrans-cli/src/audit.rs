@@ -5,19 +5,17 @@
 use std::fmt::Write as _;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use colltrans_assembly::audit::{
-    Audit, AuditCounts, AuditOptions, AuditedPair, PairFinding, audit, audit_csv, audit_json,
-};
+use colltrans_assembly::audit::{Audit, AuditCounts, AuditOptions, audit, audit_csv, audit_json};
 use colltrans_assembly::report::bcf::{MAX_TOPICS, bcf_file};
 use colltrans_assembly::report::clashes::clashes_page;
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
 
 use crate::args::AuditArguments;
-use crate::assembly::output::{head_text, source_title};
+use crate::assembly::output::{finding_text, head_text, source_title};
 use crate::assembly::{in_thread_pool, read_assembly, show_stages, stage_bar};
 use crate::failure::{Code, Failure, note, print, print_json};
 use crate::inputs::check_output_path;
-use crate::numbers::{count_text, interval, length_down, length_up, point, smaller_extent};
+use crate::numbers::{count_text, length_down, length_up};
 use crate::outputs;
 use crate::terminal::escape_line;
 
@@ -138,30 +136,6 @@ fn audit_text(bodies: &Bodies, arguments: &AuditArguments, found: &Audit) -> Str
     );
     if ignored > 0 {
         let _ = writeln!(text, "{} ignored", count_text(ignored, "pair", "pairs"));
-    }
-    text
-}
-
-/// Describes how two parts lie to each other.
-pub(crate) fn finding_text(assembly: &Assembly, pair: &AuditedPair) -> String {
-    let parts = pair.parts.map(|part| &assembly.parts()[part]);
-    let extent = smaller_extent(parts.map(|part| part.solid().bounds()));
-    let mut text = match &pair.finding {
-        PairFinding::Contained { inner, .. } => {
-            format!("{} contained", escape_line(assembly.parts()[*inner].name()))
-        }
-        PairFinding::Apart(found) => format!("{} apart", interval(found.distance)),
-        finding => finding.name().to_owned(),
-    };
-    if let Some(found) = pair.finding.interference()
-        && let Some(depth) = found.known_depth()
-    {
-        let [depth, volume] = [depth.bounds(), found.common.volume].map(interval);
-        let _ = write!(text, ", depth {depth}, volume {volume}");
-    }
-    let _ = write!(text, ", at {}", point(pair.finding.place(), 0.0, extent));
-    if let PairFinding::Apart(found) = &pair.finding {
-        let _ = write!(text, " and {}", point(found.points[1], 0.0, extent));
     }
     text
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use colltrans::glam::DVec3;
-use colltrans_assembly::audit::{AuditOptions, examine_pair};
+use colltrans_assembly::audit::{AuditOptions, AuditedPair, PairFinding, examine_pair};
 use colltrans_assembly::hints::find_hints;
 use colltrans_assembly::plan::{Plan, precedence_graph};
 use colltrans_assembly::report::{facts, glb, html};
@@ -14,11 +14,12 @@ use colltrans_assembly::{map, record, suggest};
 
 use super::free::GroupRemoval;
 use crate::args::AssemblyArguments;
-use crate::audit::finding_text;
 use crate::directions;
 use crate::failure::{Failure, note, print, print_json};
 use crate::inputs::check_output_path;
-use crate::numbers::{count_text, estimate, length_down, length_up, vector};
+use crate::numbers::{
+    count_text, estimate, interval, length_down, length_up, point, smaller_extent, vector,
+};
 use crate::outputs::{FileNames, Outputs};
 use crate::terminal::{escape_json, escape_line};
 
@@ -152,6 +153,30 @@ pub(crate) fn head_text(bodies: &Bodies) -> String {
         for defect in p.defects().iter().chain(&bodies.shrink_defects(k)) {
             let _ = writeln!(text, "  {}: {}", escape_line(p.name()), escape_line(defect));
         }
+    }
+    text
+}
+
+/// Describes how two parts lie to each other.
+pub(crate) fn finding_text(assembly: &Assembly, pair: &AuditedPair) -> String {
+    let parts = pair.parts.map(|part| &assembly.parts()[part]);
+    let extent = smaller_extent(parts.map(|part| part.solid().bounds()));
+    let mut text = match &pair.finding {
+        PairFinding::Contained { inner, .. } => {
+            format!("{} contained", escape_line(assembly.parts()[*inner].name()))
+        }
+        PairFinding::Apart(found) => format!("{} apart", interval(found.distance)),
+        finding => finding.name().to_owned(),
+    };
+    if let Some(found) = pair.finding.interference()
+        && let Some(depth) = found.known_depth()
+    {
+        let [depth, volume] = [depth.bounds(), found.common.volume].map(interval);
+        let _ = write!(text, ", depth {depth}, volume {volume}");
+    }
+    let _ = write!(text, ", at {}", point(pair.finding.place(), 0.0, extent));
+    if let PairFinding::Apart(found) = &pair.finding {
+        let _ = write!(text, " and {}", point(found.points[1], 0.0, extent));
     }
     text
 }

@@ -16,6 +16,7 @@ use glam::DVec3;
 use super::cover::{BoxPair, nearest_outside};
 use super::depth::depth_with_boxes;
 use super::inner::InnerPair;
+use super::placed_solids;
 use crate::body::Solid;
 use crate::cast::{Cover, SolidCast};
 use crate::pair::{
@@ -166,11 +167,6 @@ fn depth_of_cores(cores: &[[InnerCore; 2]]) -> Option<f64> {
     let boxes = differences.iter().map(|(bounds, _)| *bounds);
     let boxes: Vec<Aabb> = boxes.filter(|of| of.low.cmplt(of.high).all()).collect();
     Some(one.max(nearest_outside(&boxes).length() * (1.0 - 8.0 * f64::EPSILON)))
-}
-
-/// Returns both bodies in their poses.
-fn placed_solids<'a>(pair: &Pair<'a, Solid>) -> [Placed<'a, Solid>; 2] {
-    [pair.bodies.moving_placed(), pair.bodies.fixed_placed()]
 }
 
 /// Checks whether the moving body, whose surface is apart from that of the fixed one, is inside the fixed one with all

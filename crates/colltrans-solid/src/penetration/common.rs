@@ -10,6 +10,7 @@
 use glam::DVec3;
 
 use super::cells::{CommonCells, common_cells};
+use super::placed_solids;
 use crate::body::{Solid, check_is_not_rounded};
 use crate::pair::pair_scene;
 use crate::solve::hulls::ConvexBody;
@@ -144,7 +145,7 @@ fn relation(scene: &PairFrame) -> Relation {
 
 /// Checks whether a point of the world is inside both bodies and on no surface.
 fn is_inside_both(pair: &Pair<'_, Solid>, at: DVec3) -> bool {
-    [pair.bodies.moving_placed(), pair.bodies.fixed_placed()].iter().all(|solid| {
+    placed_solids(pair).iter().all(|solid| {
         let found = solid.body.signed_distances(solid.pose, &[at]);
         found.is_ok_and(|found| found.iter().all(|distance| distance.is_inside))
     })

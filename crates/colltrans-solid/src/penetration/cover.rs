@@ -10,6 +10,7 @@
 
 use glam::DVec3;
 
+use super::ROUNDING;
 use super::depth::Shortest;
 use super::inner::{InnerPair, find_boxes};
 use crate::pair::pair_scene;
@@ -23,8 +24,6 @@ const MAX_CENTERS: u32 = 96;
 const ACCURACY: f64 = 1e-9;
 /// Distance by which a difference box is smaller than computed, in noises.
 const MARGIN: f64 = 4.0;
-/// Relative margin for rounding errors of lengths.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A box in the moving body and one in the fixed body, both in the world.
 pub(super) type BoxPair = [Aabb; 2];

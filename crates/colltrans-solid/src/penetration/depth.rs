@@ -18,6 +18,7 @@ use super::cells::{common_box, near_facets};
 use super::cover::{BoxPair, cover_bound};
 use super::inner::{InnerPair, find_inner_pair};
 use super::surface::{core_distance, core_distances};
+use super::{ROUNDING, placed_solids};
 use crate::body::Solid;
 use crate::cast::{SolidCast, SolidOptions};
 use crate::pair::pair_scene;
@@ -57,8 +58,6 @@ const SAMPLES: u32 = 48;
 const CLEARANCES: [f64; 6] = [0.0, 4.0, 16.0, 64.0, 512.0, 4096.0];
 /// Part of the noise for each unit of length of the radii.
 const NOISE_OF_RADII: f64 = 16.0 * f64::EPSILON;
-/// Relative margin for rounding errors of lengths.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Relative margin for rounding errors of the depth of hulls.
 const HULL_ROUNDING: f64 = 1e-12;
 
@@ -176,9 +175,9 @@ impl<'p, 'a> Shortest<'p, 'a> {
 
     /// Returns the pair after a translation of the moving body; `None` if that is out of range.
     pub(super) fn displaced(&self, by: DVec3) -> Option<Pair<'a, Solid>> {
-        let moving = self.pair.bodies.moving_placed();
+        let [moving, fixed] = placed_solids(self.pair);
         let pose = moving.pose.with_translation(moving.pose.translation() + by).ok()?;
-        Pair::new(moving.body.at(pose), self.pair.bodies.fixed_placed()).ok()
+        Pair::new(moving.body.at(pose), fixed).ok()
     }
 
     /// Checks whether a translation separates the bodies and is shorter than those known, and stores it.
@@ -215,7 +214,7 @@ impl<'p, 'a> Shortest<'p, 'a> {
     fn bound_of_balls(&self) -> Result<f64, QueryError> {
         let nearest = core_distance(self.pair)?;
         let bound = |distance: f64| ((self.radii - distance) * (1.0 - ROUNDING)).max(0.0);
-        let bodies = [self.pair.bodies.moving_placed(), self.pair.bodies.fixed_placed()];
+        let bodies = placed_solids(self.pair);
         let Some(plain) = bodies.iter().position(|solid| solid.body.radius() == 0.0) else {
             return Ok(bound(nearest.upper));
         };
@@ -269,7 +268,7 @@ impl<'p, 'a> Shortest<'p, 'a> {
 
     /// Computes the exit along a direction, a length; `None` if the bodies never meet.
     fn exit(&self, direction: DVec3) -> Option<f64> {
-        let [moving, fixed] = [self.pair.bodies.moving_placed(), self.pair.bodies.fixed_placed()];
+        let [moving, fixed] = placed_solids(self.pair);
         let exit = Cast::new(moving, fixed, direction).ok()?.exit()?;
         Some(exit.upper.max(0.0))
     }

@@ -16,6 +16,7 @@ use glam::DVec3;
 
 use super::cells::{clipped, common_box, near_facets};
 use super::surface::core_distances;
+use super::{ROUNDING, placed_solids};
 use crate::body::Solid;
 use crate::solve::nearest::triangle::Corners;
 use crate::solve::scene::PairFrame;
@@ -36,8 +37,6 @@ const MAX_BOXES: usize = 12;
 const MAX_MOVES: u32 = 32;
 /// Distance of the sides of a box from facets, in noises. It exceeds the errors of corners and clipping, below 7 noises.
 const MARGIN: f64 = 64.0;
-/// Relative margin for rounding errors of lengths.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A convex body inside the moving solid and one inside the fixed solid. The solids are at least as deep as these.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -171,7 +170,7 @@ fn find_balls(
     max_centers: u32,
 ) -> Vec<Balls> {
     let origin = pair.bodies.translations[0];
-    let solids = [pair.bodies.moving_placed(), pair.bodies.fixed_placed()];
+    let solids = placed_solids(pair);
     // Returns lower and upper bounds of the depth of a point below each surface.
     let depths_at = |center: DVec3| {
         solids.map(|solid| match core_distances(solid, &[center]).as_deref() {

@@ -21,8 +21,17 @@ pub use surface::{SignedDistance, SignedDistanceError, SurfaceDistance};
 
 use crate::body::Solid;
 use colltrans_convex::answer::CertificateError;
+use colltrans_convex::body::Placed;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
+
+/// Relative margin for rounding errors of lengths.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Returns both bodies in their poses.
+fn placed_solids<'a>(pair: &Pair<'a, Solid>) -> [Placed<'a, Solid>; 2] {
+    [pair.bodies.moving_placed(), pair.bodies.fixed_placed()]
+}
 
 /// Queries about the interiors of two [`Solid`]s that may overlap.
 pub trait SolidPenetration {

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::Solid;
+use super::edges;
 use super::shells::{self, MAX_TRIED_TRIANGLES, lies_on_triangle, ray_crossing};
 
 impl Solid {
@@ -33,7 +34,7 @@ impl Solid {
     /// # Ok::<(), colltrans::solid::SolidError>(())
     /// ```
     pub fn bodies(&self) -> Vec<u32> {
-        let shell_of = shells::shell_numbers(&self.neighbours);
+        let shell_of = edges::shell_numbers(&self.neighbours);
         let corner = |v: u32| self.vertices[v as usize];
         let volumes = shells::shell_volumes(&shell_of, &self.triangles, corner);
         let body_of = |shell: usize| {

@@ -391,7 +391,7 @@ impl Solid {
 
     /// Computes the bounding boxes of the shells.
     fn shell_spans(&self) -> Vec<ShellBounds> {
-        let shell_of = shells::shell_numbers(&self.neighbours);
+        let shell_of = edges::shell_numbers(&self.neighbours);
         let mut spans: Vec<ShellBounds> = Vec::new();
         for (t, &shell) in shell_of.iter().enumerate() {
             if shell as usize == spans.len() {

@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::edges::NO_NEIGHBOUR;
+use super::edges::{NO_NEIGHBOUR, shell_numbers};
 use super::exact;
 use super::openness;
 use super::report::{Shell, ShellKind, SolidReport};
@@ -46,30 +46,6 @@ pub(super) fn orient_shells(surface: &mut Surface, report: &mut SolidReport) {
 
 fn is_closed(shell: &Shell) -> bool {
     shell.kind == ShellKind::Closed
-}
-
-/// Returns the shell of each triangle. Shells are numbered in the order of their first triangles.
-pub(super) fn shell_numbers(neighbours: &[[u32; 3]]) -> Vec<u32> {
-    let mut shell_of = vec![NO_NEIGHBOUR; neighbours.len()];
-    let mut stack = Vec::new();
-    let mut count = 0;
-    for seed in 0..neighbours.len() {
-        if shell_of[seed] != NO_NEIGHBOUR {
-            continue;
-        }
-        shell_of[seed] = count;
-        stack.push(seed as u32);
-        while let Some(t) = stack.pop() {
-            for &n in &neighbours[t as usize] {
-                if n != NO_NEIGHBOUR && shell_of[n as usize] == NO_NEIGHBOUR {
-                    shell_of[n as usize] = count;
-                    stack.push(n);
-                }
-            }
-        }
-        count += 1;
-    }
-    shell_of
 }
 
 /// Computes triangle count, volume, genus and closedness of each shell.

@@ -17,7 +17,7 @@ use std::thread;
 
 use glam::DVec3;
 
-use super::edges::NO_NEIGHBOUR;
+use super::edges::{self, NO_NEIGHBOUR};
 use super::error::SolidError;
 use super::tree::{self, Node};
 use super::{ShellKind, Solid, Surface};
@@ -152,7 +152,7 @@ impl Solid {
     /// Returns the volumes of the shells for other vertex positions. The shells are in the order of the report, that
     /// is, of their first facets.
     fn volumes_of(&self, vertices: &[DVec3]) -> Vec<f64> {
-        let shell_of = shells::shell_numbers(&self.neighbours);
+        let shell_of = edges::shell_numbers(&self.neighbours);
         let volumes = shells::shell_volumes(&shell_of, &self.triangles, |v| vertices[v as usize]);
         let mut first = vec![InputFacet(NO_NEIGHBOUR); volumes.len()];
         for (&shell, &facet) in shell_of.iter().zip(&self.facet_index) {
@@ -168,7 +168,7 @@ impl Solid {
         let shrinking = self.offset_field();
         // A ball or cube that is thinner than twice the amount is mirrored in a point. Its facets keep their
         // orientations, and only the sign of the volume changes.
-        let shell_of = shells::shell_numbers(&self.neighbours);
+        let shell_of = edges::shell_numbers(&self.neighbours);
         let fields = self.vertices.iter().zip(&shrinking.displacements);
         let moved: Vec<DVec3> = fields.map(|(v, x)| offset_vertex(*v, *x, amount)).collect();
         let before =

@@ -5,7 +5,8 @@ use colltrans_convex::{
     QueryError,
 };
 use colltrans_solid::{
-    Overlap, Solid, SolidCast, SolidError, SolidOptions, SolidOverlap, SolidPair, StartOverlap,
+    Overlap, ShellKind, Solid, SolidCast, SolidError, SolidOptions, SolidOverlap, SolidPair,
+    StartOverlap,
 };
 use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
@@ -382,6 +383,76 @@ fn boxes_overlap_unions_of_hollow_boxes_that_have_one_of_their_cells() {
         counts[usize::from(expected)] += 1;
     }
     assert!(counts.iter().all(|&n| n > cases(200)), "{counts:?}");
+}
+
+/// Boxes of one mesh overlap, and have edges, faces or all facets in common. Each is closed, so that a box overlaps them
+/// if it has a cell of one of them.
+#[test]
+fn overlapping_boxes_of_one_mesh_with_common_edges_have_an_inside() {
+    let mut random = Random::new(2031);
+    let (mut crowded, mut counts) = (0, [0; 2]);
+    let any_box = |random: &mut Random| {
+        let lows = [0; 3].map(|_| random.int(0, 2));
+        [lows, lows.map(|x| random.int(x + 1, 3))]
+    };
+    let mesh_of = |ends: [[i64; 3]; 2]| {
+        let [low, high] = ends.map(|corner| corner.map(|x| x as f64));
+        block(low, high)
+    };
+    let contains = |[low, high]: [[i64; 3]; 2], cell: [i64; 3]| {
+        (0..3).all(|k| low[k] <= cell[k] && cell[k] < high[k])
+    };
+    for round in 0..cases(4_000) {
+        let boxes: Vec<_> = (0..random.int(2, 4)).map(|_| any_box(&mut random)).collect();
+        let mut mesh = Mesh { vertices: Vec::new(), faces: Vec::new() };
+        for &ends in &boxes {
+            mesh = mesh.joined(&mesh_of(ends));
+        }
+        if random.one_in(2) {
+            mesh = mesh.triangulated();
+        }
+        if random.one_in(2) {
+            for k in (1..mesh.faces.len()).rev() {
+                mesh.faces.swap(k, random.index(k + 1));
+            }
+        }
+        let fixed = solid(&mesh);
+        let report = fixed.report();
+        let is_closed = report.shells.iter().all(|shell| shell.kind == ShellKind::Closed);
+        assert!(is_closed && report.open_edges == 0, "{round}: {boxes:?}");
+        crowded += usize::from(report.non_manifold_edges > 0);
+        let volume: i64 =
+            boxes.iter().map(|[p, q]| (0..3).map(|k| q[k] - p[k]).product::<i64>()).sum();
+        assert!((fixed.volume() - volume as f64).abs() < 1e-12, "{round}: {boxes:?}");
+        let moving = any_box(&mut random);
+        let is_filled = |cell| boxes.iter().any(|&ends| contains(ends, cell));
+        let cells = (0..27).map(|k| [k % 3, k / 3 % 3, k / 9]);
+        let expected = cells.filter(|&cell| contains(moving, cell)).any(is_filled);
+        let moving = solid(&mesh_of(moving));
+        assert_eq!(cast(&moving, &fixed, DVec3::X).overlaps(), expected, "{round}: {boxes:?}");
+        assert_eq!(cast(&fixed, &moving, DVec3::X).overlaps(), expected, "{round}: {boxes:?}");
+        counts[usize::from(expected)] += 1;
+    }
+    assert!(
+        crowded > cases(1_000) && counts.iter().all(|&n| n > cases(200)),
+        "{crowded} {counts:?}"
+    );
+}
+
+/// Two prisms overlap, with one edge in common, and a grain lies in both.
+#[test]
+fn a_body_inside_overlapping_prisms_with_a_common_edge_overlaps() {
+    let turned = |[x, y]: [f64; 2]| DVec3::new(0.75 * x - 0.5 * y, 0.5 * x + 0.75 * y, 0.0);
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let both = block(DVec3::ZERO, DVec3::ONE).joined(&extruded(&corners.map(turned), [0.0, 1.0]));
+    let both = solid(&both);
+    assert_eq!(both.report().non_manifold_edges, 1);
+    assert_eq!(
+        both.report().shells.iter().map(|shell| shell.triangles).collect::<Vec<_>>(),
+        [12; 2]
+    );
+    let grain = cuboid([0.3, 0.35, 0.4], [0.4, 0.45, 0.6]);
+    assert!(cast(&grain, &both, DVec3::X).overlaps() && cast(&both, &grain, DVec3::X).overlaps());
 }
 
 #[test]

@@ -37,8 +37,8 @@ use colltrans_convex::answer::{
 };
 use colltrans_convex::body::{Body, Placed, Pose};
 use colltrans_convex::cast::{Cast, CastBody, common_translation};
-use colltrans_convex::setting::check_min_gap;
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::setting::{check_length, check_min_gap};
 
 /// Default tolerance of rotated bodies, in noises.
 const DEFAULT_TOLERANCE_NOISES: f64 = 8.0;
@@ -106,6 +106,7 @@ impl SolidOptions {
     }
 
     /// Returns the options with an end of the query in multiples of the direction, or without an end.
+    /// [`Cast::with_options`] rejects a negative end and NaN.
     #[must_use]
     pub fn with_before(self, before: impl Into<Option<f64>>) -> Self {
         Self { before: before.into(), ..self }
@@ -207,6 +208,7 @@ impl CastBody for Solid {
 
     fn check_options(cast: &Cast<'_, Self>) -> Result<(), QueryError> {
         check_min_gap(cast.options.min_gap)?;
+        cast.options.before.map_or(Ok(()), check_length)?;
         let Some(tolerance) = cast.options.tolerance else { return Ok(()) };
         if !(tolerance.is_finite() && tolerance >= 0.0) {
             return Err(QueryError::Tolerance { tolerance });

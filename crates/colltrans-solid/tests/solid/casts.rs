@@ -673,6 +673,23 @@ fn a_range_has_the_contacts_at_both_ends_and_the_work() {
 }
 
 #[test]
+fn a_negative_end_of_the_query_is_an_error() {
+    let (cube, below) = (cuboid([0.0; 3], [1.0; 3]), cuboid([0.0, 0.0, -3.0], [1.0, 1.0, -2.0]));
+    let with_end = |end: f64| {
+        let cast = cast(&cube, &below, DVec3::NEG_Z);
+        cast.with_options(SolidOptions::default().with_before(end))
+    };
+    for end in [-1.0, f64::NEG_INFINITY, f64::NAN] {
+        let refused = with_end(end).map(|_| ()).expect_err("an end that is never reached");
+        assert!(matches!(refused, QueryError::Length { .. }), "{end}: {refused}");
+    }
+    for (end, is_free) in [(0.0, true), (1.0, true), (3.0, false), (f64::INFINITY, false)] {
+        let answer = with_end(end).and_then(|cast| cast.clearance()).expect("an answer");
+        assert_eq!(answer.is_free(), is_free, "{end}");
+    }
+}
+
+#[test]
 fn an_intersection_names_what_meets() {
     let (cube, other) = (cuboid([0.0; 3], [1.0; 3]), cuboid([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]));
     let touching = cast(&cube, &other, DVec3::X).intersects().expect("an answer");

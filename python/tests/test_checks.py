@@ -66,6 +66,7 @@ def test_a_part_that_passes_is_listed_with_its_seconds(machine: Path) -> None:
         ("web", "apt-get install nodejs npm"),
         ("site", "apt-get install python3 python3-venv python3-pip"),
         ("instructions", "apt-get install valgrind"),
+        ("c", "apt-get install valgrind cmake pkg-config libeigen3-dev"),
     ],
 )
 def test_a_missing_tool_fails_the_run_and_its_install_command_is_printed(

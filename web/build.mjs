@@ -1,11 +1,12 @@
-// Builds the page into `dist/`: the library for WebAssembly by cargo and wasm-opt, the scripts by esbuild.
+// Builds the page into `dist/`: the library for WebAssembly by cargo and wasm-opt, the scripts by esbuild. The folder
+// is built under another name and renamed when it is complete, so that several builds at a time do not disturb each other.
 //
 //   node build.mjs            builds once
 //   node build.mjs --serve    also serves the page on this machine
 //   node build.mjs --no-wasm  builds only the scripts, with the last build of the library
 
 import { execFileSync } from "node:child_process";
-import { copyFileSync, cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, cpSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
@@ -27,7 +28,9 @@ function found() {
 const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, "..");
 const data = join(root, "data");
-const out = join(here, "dist");
+const target = join(here, "dist");
+/** Number of attempts to replace the folder, if other builds replace it too. */
+const ATTEMPTS = 10;
 
 /** The modules of the page by the features of `colltrans-wasm`. Fewer features give smaller modules. */
 const MODULES = {
@@ -48,8 +51,9 @@ if (!process.argv.includes("--no-wasm")) {
   }
 }
 
-rmSync(out, { recursive: true, force: true });
-mkdirSync(out, { recursive: true });
+const out = join(here, `dist-${process.pid}`);
+mkdirSync(out);
+process.on("exit", () => rmSync(out, { recursive: true, force: true }));
 await Promise.all(Object.values(MODULES).flat().map(async (example) => {
   const made = join(built, "wasm32-unknown-unknown/page/examples", `${example}.wasm`);
   copyFileSync(await optimised(made), join(out, `${example.replace("page", "colltrans")}.wasm`));
@@ -81,8 +85,17 @@ const notices = ["three"].map((name) => {
   return `${name} ${version}\n\n${readFileSync(join(folder, "LICENSE"), "utf8")}`;
 });
 writeFileSync(join(out, "LICENSES.txt"), notices.join("\n"));
+for (let attempt = 1; ; attempt++) {
+  rmSync(target, { recursive: true, force: true });
+  try {
+    renameSync(out, target);
+    break;
+  } catch (error) {
+    if (attempt === ATTEMPTS) throw error;
+  }
+}
 
 if (process.argv.includes("--serve")) {
-  const server = await serve(out, Number(process.env.PORT ?? 8000));
+  const server = await serve(target, Number(process.env.PORT ?? 8000));
   console.log(`http://127.0.0.1:${server.address().port}/`);
 }

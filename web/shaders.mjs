@@ -13,7 +13,7 @@ const three = join(dirname(fileURLToPath(import.meta.url)), "node_modules/three/
 const MATERIALS = ["meshlambert", "meshbasic", "linedashed"];
 /** Pieces for features of other materials; removed if all of a piece is between `#ifdef USE_...`. */
 const PIECES =
-  /^(shadowmap_|shadowmask_|transmission_|envmap_|cube_uv_|bumpmap_|normalmap_|displacementmap_|morph|skin|logdepthbuf_|clipping_planes_|alphahash_|alphamap_|alphatest_|batching_|lightmap_|aomap_|emissivemap_|specularmap_|roughnessmap_|metalnessmap_|gradientmap_|fog_|lightprobes_|map_|uv_|dithering_|premultiplied_)/;
+  /^(shadowmap_|shadowmask_|transmission_|envmap_|cube_uv_|bumpmap_|normalmap_|displacementmap_|morph|skin|logdepthbuf_|alphahash_|alphamap_|alphatest_|batching_|lightmap_|aomap_|emissivemap_|specularmap_|roughnessmap_|metalnessmap_|gradientmap_|fog_|lightprobes_|map_|uv_|dithering_|premultiplied_)/;
 /** Pieces that only other materials, or tone mapping, include. */
 const OTHERS = /^(lights_(physical|phong|toon)_|iridescence_|clearcoat_|tonemapping_pars_)/;
 /** Stubs for classes without which the renderer does not start. */

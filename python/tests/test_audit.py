@@ -29,6 +29,8 @@ def test_columns_equal_those_of_the_command_line(cli: Path) -> None:
                 assert value.tolist() == pair[name]
             else:
                 assert np.isnan(value).all()
+        assert found.role[k] == pair.get("role", "")
+        assert (found.inner[k] < 0) == ("inner" not in pair)
         if "points" in pair:
             assert [found.point[k].tolist(), found.other_point[k].tolist()] == pair["points"]
 
@@ -45,6 +47,7 @@ def test_boxes_interfere_touch_or_are_near() -> None:
     pairs = list(zip(found.first.tolist(), found.second.tolist(), strict=True))
     assert pairs[:2] == [(0, 1), (0, 4)]
     assert found.finding[:2].tolist() == ["interfering", "contained"]
+    assert found.inner[:2].tolist() == [-1, 4]
     np.testing.assert_allclose(found.depth[0], 0.25)
     np.testing.assert_allclose(found.volume[:2].mean(axis=1), [0.25, 1 / 64], rtol=0.01)
     at = pairs.index((0, 3))
@@ -58,6 +61,9 @@ def test_boxes_interfere_touch_or_are_near() -> None:
     assert ("a", "near") not in relaxed.violations()
     assert ("a", "over") not in relaxed.violations()
     assert ("a", "grain") in relaxed.violations()
+    pressed = Assembly(parts).with_pair("a", "over", role="press", tolerance=0.3).audit()
+    at = list(zip(pressed.first.tolist(), pressed.second.tolist(), strict=True)).index((0, 1))
+    assert (pressed.role[at], pressed.tolerance[at]) == ("press", 0.3)
 
 
 def test_invalid_arguments_are_refused() -> None:

@@ -7,7 +7,7 @@
 import { Group, MeshLambertMaterial, Vector3 } from "three";
 import { aim, onPage, rounded } from "./aim";
 import type { PageAlong, PageAudit, PageFit, PageParts, PagePlan } from "./answers";
-import { Marker, wayOut } from "./assembly/clashes";
+import { MOTION, Marker, wayOut, wayText } from "./assembly/clashes";
 import { type Move, Parts, tint } from "./assembly/parts";
 import { Player } from "./assembly/player";
 import { type RemovalMap, Sphere } from "./assembly/sphere";
@@ -113,6 +113,7 @@ export class AssemblyTab {
       this.seen = new Parts(this.view);
       this.sphere = new Sphere(this.seen.camera);
       this.marker = new Marker(this.seen);
+      this.player.element.append(this.marker.element);
       this.arrange(this.seen, this.sphere);
     } catch (error) {
       this.view.append(h("p", { class: "lone", role: "alert" },
@@ -383,7 +384,7 @@ export class AssemblyTab {
     }
   }
 
-  /** Shows a clash with its least way out; -1 for the whole assembly and its plan. */
+  /** Shows a clash with its shortest way out that was found; -1 for the whole assembly and its plan. */
   private pickClash(k: number) {
     const view = this.audit?.views[k];
     if (this.clash >= 0 && !view) this.seen?.fit();
@@ -392,8 +393,8 @@ export class AssemblyTab {
     if (view) {
       this.moves = wayOut(view);
       this.player.show(
-        this.moves.map(() => `the least way out that was found, of ${this.name(view.parts[0])}`),
-        `${view.parts.map((part) => this.name(part)).join(" and ")}; point at a part for its name.`);
+        this.moves.map(() => wayText(this.name(view.parts[0]))),
+        `${view.parts.map((part) => this.name(part)).join(" and ")}; point at a part for its name.`, MOTION);
     } else {
       this.playPlan();
     }

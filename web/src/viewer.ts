@@ -1,9 +1,9 @@
 // The viewer of an assembly's report: the parts, and the disassembly step by step. Of the report of an audit: the pair
-// that is chosen in the list of findings, and a filter of the list.
+// that is chosen in the list of findings, a cut through it, and a filter of the list.
 //
 // A script without modules in a page with its data, so that it works from a file and offline.
 
-import { type Clash, Marker, wayOut } from "./assembly/clashes";
+import { type Clash, MOTION, Marker, wayOut, wayText } from "./assembly/clashes";
 import { type Move, Parts } from "./assembly/parts";
 import { Player } from "./assembly/player";
 import { h } from "./dom";
@@ -29,12 +29,15 @@ const STYLE = `
 #viewer { border: 1px solid #d7dce3; border-radius: 12px; overflow: hidden; margin: 1.2em 0; font-size: 14px; }
 #viewer .view { position: relative; height: min(62vh, 34em); background: radial-gradient(circle at 50% 35%, #fdfdfe, #e6ebf2); }
 #viewer canvas { position: absolute; inset: 0; display: block; touch-action: none; }
-#viewer .name { position: absolute; left: 12px; top: 10px; background: #fff; border-radius: 8px; padding: 3px 10px; box-shadow: 0 1px 6px #14202d22; }
+#viewer .name { position: absolute; left: 12px; top: 10px; max-width: calc(100% - 24px); overflow-wrap: anywhere; background: #fff; color: #1d2530; border-radius: 8px; padding: 3px 10px; box-shadow: 0 1px 6px #14202d22; }
 #viewer .bar { display: flex; gap: 12px; align-items: center; padding: 8px 14px; border-top: 1px solid #d7dce3; flex-wrap: wrap; }
 #viewer .bar input[type=range] { flex: 1; min-width: 10em; accent-color: #0b57d0; }
 #viewer button { font: inherit; border: 1px solid #d7dce3; border-radius: 8px; background: #fff; padding: 4px 11px; min-width: 40px; cursor: pointer; }
 #viewer button:hover { border-color: #0b57d0; }
 #viewer output { flex-basis: 100%; min-height: 1.4em; }
+#viewer .cut { display: flex; gap: 12px; align-items: center; flex: 1 1 12em; min-width: 0; }
+#viewer .cut label { display: flex; gap: 6px; align-items: center; white-space: nowrap; }
+#viewer .cut input[type=range] { min-width: 4em; }
 #viewer [hidden] { display: none; }
 `;
 
@@ -66,20 +69,26 @@ function showClashes(host: HTMLElement, data: ClashData, list: HTMLDetailsElemen
   const marker = new Marker(seen);
   let moves: Move[] = [];
   const player = new Player((t) => seen.place(moves, t));
+  player.element.append(marker.element);
   host.append(player.element);
+  const show = (clash: Clash | undefined, idle: string) => {
+    moves = clash ? wayOut(clash) : [];
+    player.show(moves.map(() => wayText(data.parts[clash!.parts[0]]?.name)), idle, MOTION);
+    marker.show(clash);
+  };
   const pick = (k: number) => {
     list.forEach((entry, other) => entry.classList.toggle("shown", other === k));
     const clash = data.clashes[k] ?? undefined;
-    moves = clash ? wayOut(clash) : [];
-    const names = clash?.parts.map((part) => data.parts[part]?.name) ?? [];
-    player.show(
-      moves.map(() => `the least way out that was found, of ${names[0]}`),
-      clash ? `${names.join(" and ")}; point at a part for its name.` : "The parts of this pair are not in the page, which would be too large.",
-    );
-    marker.show(clash);
+    const names = clash?.parts.map((part) => data.parts[part]?.name).join(" and ");
+    show(clash, names ? `${names}; point at a part for its name.` : "The parts of this pair are not in the page, which would be too large.");
   };
-  list.forEach((entry, k) => entry.addEventListener("toggle", () => entry.open && pick(k)));
+  list.forEach((entry, k) => {
+    // A click on an open entry closes it and shows its pair; a search of the browser opens entries without a click.
+    entry.querySelector("summary")?.addEventListener("click", () => pick(k));
+    entry.addEventListener("toggle", () => entry.open && !entry.classList.contains("shown") && pick(k));
+  });
   if (list.length) pick(0);
+  else show(undefined, "No pair interferes, touches or is too near; point at a part for its name.");
 }
 
 /** Puts a filter by kind and by name above the list of findings. */

@@ -172,15 +172,18 @@ test("clashes are listed, shown and saved", async () => {
   assert.deepEqual(told.views[0].parts, [0, 1]);
   // The deepest pair is shown at once, with its way out.
   assert.match(await page.textContent(".assembly-stage output"), /^a and b;/);
-  await page.locator('[aria-label="Steps of the plan"]').press("End");
-  assert.match(await page.textContent(".assembly-stage output"), /^Step 1 of 1: the least way out that was found, of a/);
+  await page.locator('[aria-label="Shortest way out that was found"]').press("End");
+  assert.match(await page.textContent(".assembly-stage output"), /^Shortest way out that was found, of a/);
+  await page.getByLabel("Cut", { exact: true }).check();
   await page.click(".part:has-text('b · c')");
   assert.match(await page.textContent(".assembly-stage output"), /^b and c;/);
+  await page.locator('[aria-label="Place of the cut"]').press("End");
   const [report] = await Promise.all([page.waitForEvent("download"), page.click("text=Download clashes.html")]);
   assert.equal((await readFile(await report.path(), "utf8")).match(/<details class="clash"/g).length, 2);
   // A second click returns to the plan.
   await page.click(".part:has-text('b · c')");
   assert.match(await page.textContent(".assembly-stage output"), /^3 parts, \d+ steps/);
+  assert.equal(await page.getByLabel("Cut", { exact: true }).isVisible(), false);
   assert.deepEqual(page.complaints, []);
   await page.context().close();
 });

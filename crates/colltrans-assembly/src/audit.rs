@@ -31,17 +31,21 @@ use crate::part::Assembly;
 use crate::roles::PairTolerance;
 use crate::watch::{Stage, Watch};
 
-pub use tables::{audit_csv, audit_json};
+pub use tables::{QUANTITIES, Quantity, audit_csv, audit_json};
 
 /// Maximum number of cells of a volume. Thin common parts of curved fits would take ten times more for 1 %.
 const MAX_CELLS: u32 = 10_000;
 
 /// Clearance between two groups of parts.
 #[derive(Debug, Clone, PartialEq)]
-struct ClearanceLevel {
+#[non_exhaustive]
+pub struct ClearanceLevel {
+    /// Names or patterns of the parts of both groups, as given.
+    pub names: [Vec<String>; 2],
+    /// Required clearance.
+    pub length: f64,
     /// Indices of the parts of both groups, sorted.
     groups: [Vec<usize>; 2],
-    length: f64,
 }
 
 /// Required clearances of an [`audit`].
@@ -87,8 +91,15 @@ impl AuditOptions {
         length: f64,
     ) -> Result<Self, AssemblyError> {
         let groups = [assembly.parts_named(first)?, assembly.parts_named(second)?];
-        self.levels.push(ClearanceLevel { groups, length: checked_clearance(length)? });
+        let names =
+            [first, second].map(|all| all.iter().map(|name| name.as_ref().to_owned()).collect());
+        self.levels.push(ClearanceLevel { names, length: checked_clearance(length)?, groups });
         Ok(self)
+    }
+
+    /// Returns the clearances of groups, in the order in which they were given. A later one replaces an earlier one.
+    pub fn levels(&self) -> &[ClearanceLevel] {
+        &self.levels
     }
 
     /// Returns the options that let pairs touch, or not.
@@ -108,9 +119,22 @@ impl AuditOptions {
         self.levels.iter().rev().find(covers).map_or(general, |level| level.length)
     }
 
-    /// Returns the largest clearance.
-    fn largest(&self) -> f64 {
-        self.levels.iter().map(|level| level.length).fold(self.within, f64::max)
+    /// Returns for each part the largest clearance or tolerance of its pairs.
+    fn reaches(&self, bodies: &Bodies) -> Vec<f64> {
+        let general = self.within.max(bodies.fit().tolerance());
+        let mut reaches = vec![general; bodies.len()];
+        let mut raise = |part: usize, length: f64| reaches[part] = reaches[part].max(length);
+        for (pair, _) in bodies.assembly().pair_fits() {
+            for part in pair {
+                raise(part, bodies.pair_tolerance(pair));
+            }
+        }
+        for level in &self.levels {
+            for &part in level.groups.iter().flatten() {
+                raise(part, level.length);
+            }
+        }
+        reaches
     }
 }
 
@@ -207,21 +231,14 @@ impl PairFinding {
         }
     }
 
-    /// Compares by severity: the deepest interference first, then the deepest contained part, contacts, and the
-    /// nearest pair.
-    fn cmp_severity(&self, other: &Self) -> Ordering {
-        let rank = |finding: &Self| match finding {
+    /// Returns the kind of the finding as a number, the most severe kind first.
+    const fn rank(&self) -> u8 {
+        match self {
             Self::Interfering(_) => 0,
             Self::Contained { .. } => 1,
             Self::Touching(_) => 2,
             Self::Apart(_) => 3,
-        };
-        let length = |finding: &Self| match (finding.interference(), finding.nearest()) {
-            (Some(found), _) => -found.depth.upper,
-            (None, Some(found)) => found.distance[0],
-            (None, None) => 0.0,
-        };
-        rank(self).cmp(&rank(other)).then(length(self).total_cmp(&length(other)))
+        }
     }
 }
 
@@ -235,10 +252,27 @@ pub struct AuditedPair {
     pub finding: PairFinding,
     /// Required clearance.
     pub clearance: f64,
-    /// Tolerance of the pair: the sum of the lengths by which the bodies are shrunk.
+    /// Tolerance of the pair: the sum of the lengths by which closed bodies are shrunk. Open surfaces are not. It has no
+    /// effect if the role of the pair permits every overlap.
     pub tolerance: f64,
     /// Whether the pair interferes, is contained, or is proven to be nearer than the clearance.
     pub is_violation: bool,
+}
+
+impl AuditedPair {
+    /// Compares by severity: violations first, the deepest interference, the deepest contained part, contacts, and the
+    /// pair that lacks most of its clearance.
+    fn cmp_severity(&self, other: &Self) -> Ordering {
+        let length = |pair: &Self| match (pair.finding.interference(), pair.finding.nearest()) {
+            (Some(found), _) => -found.depth.upper,
+            (None, Some(found)) => found.distance[0] - pair.clearance,
+            (None, None) => 0.0,
+        };
+        let violations_first = other.is_violation.cmp(&self.is_violation);
+        let kinds = violations_first.then(self.finding.rank().cmp(&other.finding.rank()));
+        let lengths = kinds.then(length(self).total_cmp(&length(other)));
+        lengths.then(self.parts.cmp(&other.parts))
+    }
 }
 
 /// Numbers of pairs.
@@ -292,15 +326,15 @@ pub fn audit(
     let parts = bodies.assembly().parts();
     let boxes: Vec<Aabb> = parts.iter().map(|part| part.solid().bounds()).collect();
     let tree = BoxTree::new(boxes.iter().copied());
-    let own = bodies.assembly().pair_fits().map(|(pair, _)| bodies.pair_tolerance(pair));
-    let reach = own.fold(options.largest().max(bodies.fit().tolerance()), f64::max);
+    let reaches = options.reaches(bodies);
+    let largest = reaches.iter().copied().fold(0.0, f64::max);
     // Covers the rounding of boxes that are expanded and compared.
-    let slack = 8.0 * f64::EPSILON * (bodies.assembly().coordinate_size() + reach);
+    let slack = 8.0 * f64::EPSILON * (bodies.assembly().coordinate_size() + largest);
     let tally = watch.start_stage(Stage::Start, parts.len());
     let reported = AtomicUsize::new(0);
     let part_pairs = |a: usize| {
         let mut counts = AuditCounts::default();
-        let mut near = tree.intersecting(&boxes[a].expanded(reach + slack));
+        let mut near = tree.intersecting(&boxes[a].expanded(reaches[a] + slack));
         near.retain(|&b| b > a);
         near.retain(|&b| {
             let pair = [a, b];
@@ -336,11 +370,7 @@ pub fn audit(
         audit.counts.ignored += counts.ignored;
         audit.pairs.append(&mut pairs);
     }
-    audit.pairs.sort_by(|x, y| {
-        let violations_first = y.is_violation.cmp(&x.is_violation);
-        let severity = violations_first.then_with(|| x.finding.cmp_severity(&y.finding));
-        severity.then(x.parts.cmp(&y.parts))
-    });
+    audit.pairs.sort_by(AuditedPair::cmp_severity);
     for pair in &audit.pairs {
         audit.counts.violations += usize::from(pair.is_violation);
         *match pair.finding {

@@ -1,8 +1,9 @@
 //! Writes CSV in which text cells cannot break out of their cell or be read as formulas.
 //!
-//! Spreadsheet programs evaluate a cell that begins with `=`, `+`, `-` or `@`. Such a text is prefixed with
-//! an apostrophe, which marks text there. [Control characters](colltrans_mesh::plain) are escaped first, so
-//! that none precedes such a sign.
+//! Spreadsheet programs evaluate a cell that begins with `=`, `+`, `-` or `@`, some also with their full-width forms.
+//! Such a text is prefixed with an apostrophe, which marks text there. A text that begins with an apostrophe gets another
+//! one, so that different texts stay different. [Control characters](colltrans_mesh::plain) are escaped first, so that
+//! none precedes such a sign.
 
 use std::fmt::Write;
 
@@ -48,8 +49,8 @@ impl Table {
     /// Appends a text cell: escaped, quoted if it contains a separator or a quote.
     fn write_text_cell(&mut self, text: &str) {
         let text = escape_control(text);
-        let is_formula = text.starts_with(['=', '+', '-', '@']);
-        let prefix = if is_formula { "'" } else { "" };
+        let needs_mark = text.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠', '\'']);
+        let prefix = if needs_mark { "'" } else { "" };
         if text.contains([',', '"', ';']) {
             let _ = write!(self.text, "\"{prefix}{}\"", text.replace('"', "\"\""));
         } else {
@@ -74,7 +75,8 @@ mod tests {
         table.push_row(&[Cell::Text("a,\"b\"\r\nc"), Cell::Text("\t@x")]);
         table.push_row(&[Cell::Text("\u{1b}[31m\u{9b}\u{7f}"), Cell::Text("@\u{200b}")]);
         table.push_row(&[Cell::Text("plain"), Cell::Text("-x")]);
-        let expected = "a,b\n'=1+1,-0.5\n\"a,\"\"b\"\"\\r\\nc\",\\t@x\n\\u{1b}[31m\\u{9b}\\u{7f},'@\\u{200b}\nplain,'-x\n";
+        table.push_row(&[Cell::Text("'=1+1"), Cell::Text("＝1+1")]);
+        let expected = "a,b\n'=1+1,-0.5\n\"a,\"\"b\"\"\\r\\nc\",\\t@x\n\\u{1b}[31m\\u{9b}\\u{7f},'@\\u{200b}\nplain,'-x\n''=1+1,'＝1+1\n";
         assert_eq!(table.into_text(), expected);
     }
 }

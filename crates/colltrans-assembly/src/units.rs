@@ -10,6 +10,17 @@ const UNITS: [(&[&str], f64); 6] = [
     (&["micron", "um"], 1e-6),
 ];
 
+/// Preferred names of all units.
+pub const UNIT_NAMES: [&str; UNITS.len()] = {
+    let mut names = [""; UNITS.len()];
+    let mut k = 0;
+    while k < UNITS.len() {
+        names[k] = UNITS[k].0[0];
+        k += 1;
+    }
+    names
+};
+
 /// Returns the length of a unit in metres; `None` if the name is unknown.
 pub fn unit_in_metres(name: &str) -> Option<f64> {
     UNITS.iter().find(|(names, _)| names.contains(&name)).map(|(_, metres)| *metres)

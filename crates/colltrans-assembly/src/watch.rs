@@ -17,6 +17,8 @@ pub enum Stage {
     Plan,
     /// Removal maps.
     Map,
+    /// Pictures of the findings of an audit.
+    Pictures,
 }
 
 impl Stage {
@@ -28,6 +30,7 @@ impl Stage {
             Self::Rooms => "rooms",
             Self::Plan => "plan",
             Self::Map => "map",
+            Self::Pictures => "pictures",
         }
     }
 }

@@ -3,10 +3,11 @@
 //! Sources, roles and tolerances are those of [`assembly`](crate::assembly). `colltrans_assembly::audit` finds the pairs.
 
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use colltrans_assembly::audit::{Audit, AuditCounts, AuditOptions, audit, audit_csv, audit_json};
-use colltrans_assembly::report::bcf::{MAX_TOPICS, bcf_file};
+use colltrans_assembly::report::bcf::{MAX_TOPICS, bcf_file, metres_per_unit};
 use colltrans_assembly::report::clashes::clashes_page;
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
 
@@ -14,9 +15,9 @@ use crate::args::AuditArguments;
 use crate::assembly::output::{finding_text, head_text, source_title};
 use crate::assembly::{in_thread_pool, read_assembly, show_stages, stage_bar};
 use crate::failure::{Code, Failure, note, print, print_json};
-use crate::inputs::check_output_path;
+use crate::inputs::{check_distinct_outputs, check_output_path};
 use crate::numbers::{count_text, length_down, length_up};
-use crate::outputs;
+use crate::outputs::PendingFile;
 use crate::terminal::escape_line;
 
 pub(crate) fn run(arguments: &AuditArguments) -> Result<(), Failure> {
@@ -25,27 +26,36 @@ pub(crate) fn run(arguments: &AuditArguments) -> Result<(), Failure> {
 
 /// Audits the assembly in the current thread pool, and writes the answer.
 fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
+    let paths = [&arguments.csv, &arguments.report, &arguments.bcf];
+    check_distinct_outputs(&paths.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
+    let created = arguments.bcf.as_ref().map(|_| creation_seconds()).transpose()?;
     let assembly = read_assembly(&arguments.source, &arguments.input, &arguments.roles)?;
     let options = audit_options(arguments, &assembly)?;
-    let inputs: Vec<_> = assembly.files().iter().map(std::path::PathBuf::as_path).collect();
-    for path in [&arguments.csv, &arguments.report, &arguments.bcf].into_iter().flatten() {
+    let inputs: Vec<_> = assembly.files().iter().map(PathBuf::as_path).collect();
+    for path in paths.into_iter().flatten() {
         check_output_path(path, &inputs, "give the output another name")?;
     }
-    let created = if arguments.bcf.is_some() { creation_seconds()? } else { 0 };
+    if let Some(path) = &arguments.bcf {
+        check_unit(path, &assembly)?;
+    }
+    // Opened first, so that a path that cannot be written is found before the work.
+    let [csv, report, bcf] = paths.map(|path| path.as_deref().map(PendingFile::create).transpose());
+    let files = OutputFiles { csv: csv?, report: report?, bcf: bcf?.zip(created) };
     let fit = arguments.tolerance.map_or_else(|| Fit::default_for(&assembly), Fit::Tolerance);
     let bodies = Bodies::new(&assembly, fit)?;
-    let bar = stage_bar();
-    let progress = show_stages(&bar);
-    let found = audit(&bodies, &options, Watch::default().with_progress(&progress))?;
-    bar.finish_and_clear();
+    let found = with_bar(|watch| audit(&bodies, &options, watch))?;
     for text in assembly.notes() {
         note(text);
     }
-    write_files(&bodies, &options, &found, arguments, created)?;
+    let title = source_title(&arguments.source);
+    with_bar(|watch| files.write(&bodies, &options, &found, &title, watch))?;
+    if let Some(path) = arguments.bcf.as_ref().filter(|_| found.counts.violations > MAX_TOPICS) {
+        note(&format!("{} has the {MAX_TOPICS} worst violations", path.display()));
+    }
     if arguments.json {
         print_json(&format!("{}\n", audit_json(&bodies, &options, &found)))?;
     } else {
-        print(&audit_text(&bodies, arguments, &found))?;
+        print(&audit_text(&bodies, &options, &found, arguments.limit))?;
     }
     match found.counts.violations {
         0 => Ok(()),
@@ -56,28 +66,60 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
     }
 }
 
-/// Writes the requested files. `created`, in seconds since 1970, is the time in a BCF file.
-fn write_files(
-    bodies: &Bodies,
-    options: &AuditOptions,
-    found: &Audit,
-    arguments: &AuditArguments,
-    created: u64,
-) -> Result<(), Failure> {
-    let (assembly, title) = (bodies.assembly(), source_title(&arguments.source));
-    if let Some(csv) = &arguments.csv {
-        outputs::write(csv, audit_csv(assembly, found).as_bytes())?;
-    }
-    if let Some(report) = &arguments.report {
-        outputs::write(report, clashes_page(bodies, options, found, &title).as_bytes())?;
-    }
-    if let Some(path) = &arguments.bcf {
-        let bytes = bcf_file(assembly, found, &title, created)
-            .map_err(|error| Failure::write_error(path.display(), &error))?;
-        outputs::write(path, &bytes)?;
-        if found.counts.violations > MAX_TOPICS {
-            note(&format!("{} has the {MAX_TOPICS} worst violations", path.display()));
+/// Runs work whose stages are shown by a bar, which is then cleared.
+fn with_bar<T>(work: impl FnOnce(Watch) -> T) -> T {
+    let bar = stage_bar();
+    let progress = show_stages(&bar);
+    let result = work(Watch::default().with_progress(&progress));
+    bar.finish_and_clear();
+    result
+}
+
+/// The requested files.
+struct OutputFiles {
+    csv: Option<PendingFile>,
+    report: Option<PendingFile>,
+    /// With the time of creation of the topics, in seconds since 1970.
+    bcf: Option<(PendingFile, u64)>,
+}
+
+impl OutputFiles {
+    /// Writes the files. `title` is the name of the model.
+    fn write(
+        self,
+        bodies: &Bodies,
+        options: &AuditOptions,
+        found: &Audit,
+        title: &str,
+        watch: Watch,
+    ) -> Result<(), Failure> {
+        let assembly = bodies.assembly();
+        if let Some(file) = self.csv {
+            file.write(audit_csv(assembly, found).as_bytes())?;
         }
+        if let Some(file) = self.report {
+            file.write(clashes_page(bodies, options, found, title, watch)?.as_bytes())?;
+        }
+        if let Some((file, created)) = self.bcf {
+            let path = file.path().display().to_string();
+            let bytes = bcf_file(assembly, found, title, created, watch)
+                .map_err(|error| Failure::write_error(&path, &error))?;
+            file.write(&bytes)?;
+        }
+        Ok(())
+    }
+}
+
+/// Checks the unit of a model that becomes a BCF file, and notes a missing one.
+///
+/// # Errors
+/// The unit is unknown.
+fn check_unit(path: &Path, assembly: &Assembly) -> Result<(), Failure> {
+    let path = path.display();
+    let refused = |message| Failure::new(Code::Input, format!("{path}: {message}"));
+    metres_per_unit(assembly).map_err(refused)?;
+    if assembly.unit().is_none() {
+        note(&format!("{path}: the source has no unit; its coordinates are taken to be in metres"));
     }
     Ok(())
 }
@@ -107,16 +149,22 @@ fn audit_options(arguments: &AuditArguments, assembly: &Assembly) -> Result<Audi
     Ok(options)
 }
 
-/// Returns the answer as text: one line for each violation, and the numbers of pairs.
-fn audit_text(bodies: &Bodies, arguments: &AuditArguments, found: &Audit) -> String {
+/// Returns the answer as text: the settings, one line for each violation, at most `limit`, and the numbers of pairs.
+fn audit_text(
+    bodies: &Bodies,
+    options: &AuditOptions,
+    found: &Audit,
+    limit: Option<usize>,
+) -> String {
     let assembly = bodies.assembly();
     let mut text = head_text(bodies);
-    for given in &arguments.within {
-        let groups = given.groups.as_ref().map(|[a, b]| format!(" of {a} and {b}"));
-        let groups = escape_line(groups.unwrap_or_default());
-        let _ = writeln!(text, "clearance{groups}: {}", length_down(given.length));
+    let contact = if options.allow_contact { ", contacts permitted" } else { "" };
+    let _ = writeln!(text, "clearance: {}{contact}", length_down(options.within));
+    for level in options.levels() {
+        let [a, b] = level.names.each_ref().map(|names| escape_line(names.join(", ")));
+        let _ = writeln!(text, "clearance of {a} and {b}: {}", length_down(level.length));
     }
-    let limit = arguments.limit.unwrap_or(usize::MAX);
+    let limit = limit.unwrap_or(usize::MAX);
     for pair in found.violations().take(limit) {
         let [a, b] = pair.parts.map(|part| escape_line(assembly.parts()[part].name()));
         let tolerance = pair.finding.interference().and_then(|found| found.least_tolerance);

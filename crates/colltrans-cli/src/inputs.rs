@@ -98,6 +98,32 @@ pub(crate) fn check_output_path(
     }
 }
 
+/// Checks that outputs are different files.
+///
+/// # Errors
+/// Two of them are the same file.
+pub(crate) fn check_distinct_outputs(outputs: &[&Path]) -> Result<(), Failure> {
+    let folder = |path: &Path| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        folder.unwrap_or(Path::new(".")).canonicalize().ok()
+    };
+    let is_same = |a: &Path, b: &Path| match [a, b].map(Identity::of_path) {
+        [Some(a), Some(b)] => a == b,
+        // Several outputs may go to one device.
+        [None, None] if a.exists() => false,
+        [None, None] => a == b || a.file_name() == b.file_name() && folder(a) == folder(b),
+        _ => false,
+    };
+    for (k, output) in outputs.iter().enumerate() {
+        if let Some(other) = outputs[..k].iter().find(|other| is_same(other, output)) {
+            let [a, b] = [other, output].map(|path| path.display());
+            let message = format!("{a} and {b} are one output file; give them two names");
+            return Err(Failure::new(Code::Usage, message));
+        }
+    }
+    Ok(())
+}
+
 /// Reads a text file.
 pub(crate) fn read_text(file: &Path) -> Result<String, Failure> {
     with_file_name(file, colltrans_mesh::file::text(file))

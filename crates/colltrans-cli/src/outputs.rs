@@ -121,34 +121,64 @@ fn create_temporary(target: &Path) -> io::Result<(File, PathBuf)> {
     }
 }
 
+/// A file that is created before its content is known. If it is dropped, nothing remains of it.
+pub(crate) struct PendingFile {
+    path: PathBuf,
+    output: Output,
+}
+
+impl PendingFile {
+    /// Creates the file under its temporary name.
+    pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
+        let failed = |error| Failure::write_error(path.display(), &error);
+        let output = Output::create(path).map_err(failed)?;
+        Ok(Self { path: path.to_owned(), output })
+    }
+
+    /// Returns the final path.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes the content and moves the file to its final path.
+    pub(crate) fn write(mut self, bytes: &[u8]) -> Result<(), Failure> {
+        self.fill(bytes)?;
+        self.finish()
+    }
+
+    fn fill(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+        let written = self.output.file.write_all(bytes);
+        written.map_err(|error| Failure::write_error(self.path.display(), &error))
+    }
+
+    fn finish(self) -> Result<(), Failure> {
+        let Self { path, output } = self;
+        output.finish().map_err(|error| Failure::write_error(path.display(), &error))
+    }
+}
+
 /// Files that belong together. All are written before the first is moved to its final path.
 #[derive(Default)]
-pub(crate) struct Outputs(Vec<(PathBuf, Output)>);
+pub(crate) struct Outputs(Vec<PendingFile>);
 
 impl Outputs {
     /// Writes a file under its temporary name.
-    pub(crate) fn write(&mut self, path: PathBuf, bytes: &[u8]) -> Result<(), Failure> {
-        let failed = |error| Failure::write_error(path.display(), &error);
-        let mut output = Output::create(&path).map_err(failed)?;
-        output.file.write_all(bytes).map_err(failed)?;
-        self.0.push((path, output));
+    pub(crate) fn write(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+        let mut file = PendingFile::create(path)?;
+        file.fill(bytes)?;
+        self.0.push(file);
         Ok(())
     }
 
     /// Moves all files to their final paths.
     pub(crate) fn finish(self) -> Result<(), Failure> {
-        for (path, output) in self.0 {
-            output.finish().map_err(|error| Failure::write_error(path.display(), &error))?;
-        }
-        Ok(())
+        self.0.into_iter().try_for_each(PendingFile::finish)
     }
 }
 
 /// Writes a file.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let mut outputs = Outputs::default();
-    outputs.write(path.to_owned(), bytes)?;
-    outputs.finish()
+    PendingFile::create(path)?.write(bytes)
 }
 
 /// Writes a proof with a final line feed.

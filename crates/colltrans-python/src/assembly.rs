@@ -14,7 +14,9 @@ use std::time::Duration;
 
 use colltrans::glam::{DAffine3, DVec3};
 use colltrans::solid::StartOverlap;
-use colltrans_assembly::audit::{AuditOptions, AuditedPair, audit};
+use colltrans_assembly::audit::{
+    AuditOptions, AuditedPair, PairFinding, QUANTITIES, Quantity, audit,
+};
 use colltrans_assembly::blocking::BlockingGraph;
 use colltrans_assembly::candidates::{CandidateOptions, find_candidates};
 use colltrans_assembly::liaisons::find_liaisons;
@@ -34,7 +36,7 @@ use colltrans_assembly::{
 };
 use colltrans_assembly_io::read::{self, Geometry, ReadOptions};
 use colltrans_mesh::Mesh;
-use numpy::PyArray2;
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::{faces, points, table};
@@ -91,10 +93,16 @@ type WantedRow = (Vec<usize>, Vec<usize>, bool, bool);
 /// reason, and for some parts the sets of parts that hold them.
 type StuckRow = (Vec<usize>, usize, Option<usize>, String, Vec<(usize, Vec<Vec<usize>>)>);
 
-/// Indices of the first and the second part, names of the findings, whether they are violations, their numbers, and the
-/// numbers of examined and of ignored pairs.
-type AuditColumns<'py> =
-    ([Vec<usize>; 2], Vec<&'static str>, Vec<bool>, Bound<'py, PyArray2<f64>>, [usize; 2]);
+/// Indices of the first and the second part and of the inner one (or -1), names of the findings and of the
+/// roles, whether they are violations, a table for each of [`QUANTITIES`] by name, and the numbers of examined and of
+/// ignored pairs.
+type AuditColumns<'py> = (
+    [Vec<i64>; 3],
+    [Vec<&'static str>; 2],
+    Vec<bool>,
+    BTreeMap<&'static str, Bound<'py, PyArray2<f64>>>,
+    [usize; 2],
+);
 /// Clearance between two groups of parts.
 type LevelRow = (Vec<String>, Vec<String>, f64);
 
@@ -239,21 +247,17 @@ fn passed_row(passed: &ToleratedContact) -> PassedRow {
     (parts, role.map(Role::name), tolerance, tolerated.describe(role))
 }
 
-/// Returns the numbers of a pair of an audit: clearance, tolerance, bounds of the distance, the depth and the volume, the
-/// translation of the depth, the place, the nearest point of the second part, and the least tolerance. Absent values are NaN.
-fn audit_row(pair: &AuditedPair) -> [f64; 18] {
-    const NAN: DVec3 = DVec3::NAN;
-    let (interference, nearest) = (pair.finding.interference(), pair.finding.nearest());
-    let [dl, du] = nearest.map_or([f64::NAN; 2], |found| found.distance);
-    let depth = interference.and_then(|found| found.known_depth());
-    let volume = interference.and_then(|found| found.known_volume());
-    let [pl, pu] = depth.map_or([f64::NAN; 2], |depth| depth.bounds());
-    let [vl, vu] = volume.unwrap_or([f64::NAN; 2]);
-    let [ox, oy, oz] = depth.map_or(NAN, |depth| depth.translation).to_array();
-    let [x, y, z] = pair.finding.place().to_array();
-    let [qx, qy, qz] = nearest.map_or(NAN, |found| found.points[1]).to_array();
-    let least = interference.and_then(|found| found.least_tolerance).unwrap_or(f64::NAN);
-    [pair.clearance, pair.tolerance, dl, du, pl, pu, vl, vu, ox, oy, oz, x, y, z, qx, qy, qz, least]
+/// Returns the numbers of a quantity of all pairs of an audit, a row for each pair. Absent values are NaN.
+fn quantity_table<'py>(
+    py: Python<'py>,
+    quantity: &Quantity,
+    pairs: &[AuditedPair],
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let width = quantity.columns.len();
+    let numbers = pairs
+        .iter()
+        .flat_map(|pair| quantity.values(pair).unwrap_or_else(|| vec![f64::NAN; width]));
+    numbers.collect::<Vec<_>>().into_pyarray(py).reshape([pairs.len(), width])
 }
 
 /// Reads a table of handling times, in seconds.
@@ -446,12 +450,28 @@ impl Assembly {
         }
         let choices = Choices::new(tolerance, false);
         let found = self.ask(py, choices, |bodies, watch| audit(bodies, &options, watch))?;
+        let tables = QUANTITIES
+            .iter()
+            .map(|quantity| Ok((quantity.name, quantity_table(py, quantity, &found.pairs)?)));
+        let tables = tables.collect::<PyResult<_>>()?;
+        let column = |part: fn(&AuditedPair) -> Option<usize>| {
+            let index = |pair| part(pair).map_or(-1, |part| part as i64);
+            found.pairs.iter().map(index).collect()
+        };
+        let inner = |pair: &AuditedPair| match pair.finding {
+            PairFinding::Contained { inner, .. } => Some(inner),
+            _ => None,
+        };
+        let role = |[a, b]: [usize; 2]| self.0.pair_fit(a, b).and_then(|fit| fit.role);
         let pairs = found.pairs.iter();
         Ok((
-            [0, 1].map(|side| pairs.clone().map(|pair| pair.parts[side]).collect()),
-            pairs.clone().map(|pair| pair.finding.name()).collect(),
-            pairs.clone().map(|pair| pair.is_violation).collect(),
-            table(py, pairs.map(audit_row))?,
+            [column(|pair| Some(pair.parts[0])), column(|pair| Some(pair.parts[1])), column(inner)],
+            [
+                pairs.clone().map(|pair| pair.finding.name()).collect(),
+                pairs.clone().map(|pair| role(pair.parts).map_or("", Role::name)).collect(),
+            ],
+            pairs.map(|pair| pair.is_violation).collect(),
+            tables,
             [found.counts.examined, found.counts.ignored],
         ))
     }

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let found = audit(&bodies, &options, watch)?;
         return Ok(std::fs::write(
             target,
-            clashes::clashes_page(&bodies, &options, &found, "parts"),
+            clashes::clashes_page(&bodies, &options, &found, "parts", watch)?,
         )?);
     }
     let mut findings = AnalysisRequest::default().analyse(&bodies, watch)?;

@@ -49,7 +49,8 @@ class Rooms:
 class Audit:
     """The pairs of parts that interfere, touch, or are nearer than their clearance.
 
-    The worst pair is first. Absent numbers are NaN. All bounds are proven ``[lower, upper]``.
+    Violations are first, and of these the worst. Absent numbers are NaN. All bounds are proven
+    ``[lower, upper]``.
 
     Attributes
     ----------
@@ -60,8 +61,13 @@ class Audit:
         ``"interfering"``, ``"contained"``, ``"touching"`` or ``"apart"``.
     violation : ndarray of bool, shape (N,)
         Whether the pair interferes, is contained, or is nearer than its clearance.
+    inner : ndarray of int, shape (N,)
+        The index of the part inside the other one, of contained pairs; otherwise -1.
+    role : ndarray of str, shape (N,)
+        The role of the pair, for example ``"press"``; ``""`` without a role.
     clearance, tolerance : ndarray of shape (N,)
-        The required clearance and the tolerance of the pair.
+        The required clearance of the pair, and the sum of the lengths by which its closed bodies
+        are shrunk.
     distance : ndarray of shape (N, 2)
         Bounds of the distance of parts that touch or are apart.
     depth : ndarray of shape (N, 2)
@@ -86,6 +92,8 @@ class Audit:
     second: NDArray[np.int64]
     finding: NDArray[np.str_]
     violation: NDArray[np.bool_]
+    inner: NDArray[np.int64]
+    role: NDArray[np.str_]
     clearance: Floats
     tolerance: Floats
     distance: Floats
@@ -767,8 +775,8 @@ class Assembly:
     ) -> Audit:
         """Finds all pairs of parts that interfere, touch, or are nearer than a clearance.
 
-        Pairs with a role or a tolerance of their own have no clearance. Ignored and glued pairs are
-        left out.
+        Pairs with a role or a tolerance of their own have no clearance, unless a level names both
+        parts. Ignored and glued pairs are left out.
 
         Parameters
         ----------
@@ -795,27 +803,23 @@ class Assembly:
         True
         """
         asked = [([a], [b], float(length)) for (a, b), length in (levels or {}).items()]
-        sides, finding, violation, numbers, counts = self._assembly.audit(
+        parts, words, violation, tables, counts = self._assembly.audit(
             float(within), asked, tolerance, allow_contact
         )
-        first, second = (np.array(side, dtype=np.int64) for side in sides)
+        first, second, inner = (np.array(part, dtype=np.int64) for part in parts)
+        finding, role = (np.array(word, dtype=np.str_) for word in words)
+        # Quantities with one number are columns without a second axis.
         columns = {
-            "clearance": numbers[:, 0],
-            "tolerance": numbers[:, 1],
-            "distance": numbers[:, 2:4],
-            "depth": numbers[:, 4:6],
-            "volume": numbers[:, 6:8],
-            "translation": numbers[:, 8:11],
-            "point": numbers[:, 11:14],
-            "other_point": numbers[:, 14:17],
-            "least_tolerance": numbers[:, 17],
+            name: table[:, 0] if table.shape[1] == 1 else table for name, table in tables.items()
         }
         return Audit(
             tuple(self.parts),
             first,
             second,
-            np.array(finding, dtype=np.str_),
+            finding,
             np.array(violation, dtype=np.bool_),
+            inner,
+            role,
             **columns,
             examined=counts[0],
             ignored=counts[1],

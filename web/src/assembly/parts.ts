@@ -2,7 +2,7 @@
 
 import {
   AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, EdgesGeometry, Group, LineBasicMaterial,
-  LineSegments, Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, Quaternion, Scene, Vector3, WebGLRenderer,
+  LineSegments, Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, type Plane, Quaternion, Scene, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { casterAt } from "../aim";
@@ -36,9 +36,9 @@ export function tint(part: number): Vec {
 export class Parts {
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera(30, 1, 0.01, 1e4);
-  readonly renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+  readonly renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true, stencil: true });
   readonly orbit: OrbitControls;
-  private readonly parts: { group: Group; material: MeshLambertMaterial; line: LineBasicMaterial; colour: Vec }[] = [];
+  private readonly parts: { group: Group; geometry: BufferGeometry; triangles: Uint32Array; material: MeshLambertMaterial; line: LineBasicMaterial; colour: Vec }[] = [];
   private readonly name = h("div", { class: "name", hidden: true });
   private names: string[] = [];
   private lit = -1;
@@ -114,7 +114,22 @@ export class Parts {
     const line = new LineBasicMaterial({ color: 0x1d2733, transparent: true, opacity: 0.6 });
     group.add(new Mesh(indexed, material), new LineSegments(new EdgesGeometry(indexed, 20), line));
     this.scene.add(group);
-    this.parts.push({ group, material, line, colour: part.colour });
+    this.parts.push({ group, geometry: indexed, triangles: part.triangles, material, line, colour: part.colour });
+  }
+
+  /** Returns the shape of a part, and the group that moves with it. */
+  shape(part: number): { group: Group; geometry: BufferGeometry; triangles: Uint32Array } | undefined {
+    return this.parts[part];
+  }
+
+  /** Hides what is on the negative side of planes. */
+  clip(planes: Plane[]) {
+    for (const { material, line } of this.parts) material.clippingPlanes = line.clippingPlanes = planes;
+  }
+
+  /** Extent of the picture, including parts that have been moved. */
+  get reach(): number {
+    return this.extent;
   }
 
   /** Places all parts after `t` of the moves. */

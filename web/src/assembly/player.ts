@@ -1,14 +1,16 @@
-// The slider over the steps of a plan, with a description of each step.
+// The slider over the steps of a plan, with a description of each step, or over another motion.
 
 import { h } from "../dom";
 
 export class Player {
   readonly element: HTMLElement;
-  private readonly slider = h("input", { type: "range", min: 0, max: 1, step: "any", value: 0, "aria-label": "Steps of the plan" });
+  private readonly slider = h("input", { type: "range", min: 0, max: 1, step: "any", value: 0 });
   private readonly play = h("button", { "aria-label": "Play", title: "Play" }, "▶");
   private readonly said = h("output");
+  private readonly controls: (HTMLButtonElement | HTMLInputElement)[];
   private steps: string[] = [];
   private idle = "";
+  private isPlan = true;
   private running = 0;
 
   /** `move` shows a position: the number of finished steps, with a fraction for the current one. */
@@ -17,9 +19,8 @@ export class Player {
       const t = this.t;
       this.go(Math.min(this.steps.length, Math.max(0, by > 0 ? Math.floor(t) + 1 : Math.ceil(t) - 1)));
     };
-    this.element = h("div", { class: "bar" }, this.play,
-      h("button", { "aria-label": "Step back", onclick: jump(-1) }, "‹"), h("button", { "aria-label": "Step on", onclick: jump(1) }, "›"),
-      this.slider, this.said);
+    this.controls = [this.play, h("button", { "aria-label": "Step back", onclick: jump(-1) }, "‹"), h("button", { "aria-label": "Step on", onclick: jump(1) }, "›"), this.slider];
+    this.element = h("div", { class: "bar" }, ...this.controls, this.said);
     this.slider.addEventListener("input", () => {
       this.stop();
       this.place();
@@ -27,13 +28,14 @@ export class Player {
     this.play.addEventListener("click", () => (this.running ? this.stop() : this.start()));
   }
 
-  /** Shows another plan: the descriptions of its steps, and the text before the first one. */
-  show(steps: string[], idle: string) {
+  /** Shows another plan: the descriptions of its steps, and the text before the first one. `motion` names another motion. */
+  show(steps: string[], idle: string, motion?: string) {
     this.stop();
-    [this.steps, this.idle] = [steps, idle];
+    [this.steps, this.idle, this.isPlan] = [steps, idle, motion === undefined];
+    this.slider.setAttribute("aria-label", motion ?? "Steps of the plan");
     this.slider.max = String(Math.max(steps.length, 1e-9));
     this.slider.value = "0";
-    for (const control of this.element.querySelectorAll<HTMLButtonElement | HTMLInputElement>("button, input")) control.disabled = !steps.length;
+    for (const control of this.controls) control.disabled = !steps.length;
     this.place();
   }
 
@@ -50,7 +52,8 @@ export class Player {
 
   private place() {
     const step = this.steps[Math.min(this.steps.length, Math.ceil(this.t)) - 1];
-    this.said.textContent = step ? `Step ${Math.ceil(this.t)} of ${this.steps.length}: ${step}` : this.idle;
+    const count = this.isPlan ? `Step ${Math.ceil(this.t)} of ${this.steps.length}: ` : "";
+    this.said.textContent = step ? count + step : this.idle;
     this.move(this.t);
   }
 

@@ -1,6 +1,7 @@
 //! An audit as JSON and as a table (CSV).
 //!
-//! `colltrans help json` lists the fields, and `docs/answers.schema.json` defines them.
+//! - [`QUANTITIES`] lists the numbers of a pair. JSON, CSV and the columns in Python follow from it.
+//! - `colltrans help json` lists the fields, and `docs/answers.schema.json` defines them.
 
 use colltrans::solid::SolidDepth;
 use serde_json::{Value, json};
@@ -11,15 +12,91 @@ use crate::csv::{Cell, Table};
 use crate::part::{Assembly, Part};
 use crate::record::part_json;
 
+/// A number, bounds or a vector of a pair.
+#[derive(Debug, Clone, Copy)]
+pub struct Quantity {
+    /// Name in JSON and in Python.
+    pub name: &'static str,
+    /// Columns in a table, one for each number.
+    pub columns: &'static [&'static str],
+    values: fn(&AuditedPair) -> Option<Vec<f64>>,
+}
+
+impl Quantity {
+    /// Returns the numbers of a pair, as many as columns; `None` if the pair has none.
+    pub fn values(&self, pair: &AuditedPair) -> Option<Vec<f64>> {
+        (self.values)(pair)
+    }
+}
+
+/// All numbers of a pair, in the order of the columns. In JSON `point` and `other_point` are `points` of parts that touch
+/// or are apart.
+pub static QUANTITIES: [Quantity; 9] = [
+    Quantity {
+        name: "clearance",
+        columns: &["clearance"],
+        values: |pair| Some(vec![pair.clearance]),
+    },
+    Quantity {
+        name: "distance",
+        columns: &["distance_lower", "distance_upper"],
+        values: |pair| Some(pair.finding.nearest()?.distance.to_vec()),
+    },
+    Quantity {
+        name: "depth",
+        columns: &["depth_lower", "depth_upper"],
+        values: |pair| Some(known_depth(pair)?.bounds().to_vec()),
+    },
+    Quantity {
+        name: "translation",
+        columns: &["out_x", "out_y", "out_z"],
+        values: |pair| Some(known_depth(pair)?.translation.to_array().to_vec()),
+    },
+    Quantity {
+        name: "least_tolerance",
+        columns: &["least_tolerance"],
+        values: |pair| Some(vec![pair.finding.interference()?.least_tolerance?]),
+    },
+    Quantity {
+        name: "volume",
+        columns: &["volume_lower", "volume_upper"],
+        values: |pair| Some(pair.finding.interference()?.known_volume()?.to_vec()),
+    },
+    Quantity {
+        name: "point",
+        columns: &["x", "y", "z"],
+        values: |pair| Some(pair.finding.place().to_array().to_vec()),
+    },
+    Quantity {
+        name: "tolerance",
+        columns: &["tolerance"],
+        values: |pair| Some(vec![pair.tolerance]),
+    },
+    Quantity {
+        name: "other_point",
+        columns: &["other_x", "other_y", "other_z"],
+        values: |pair| Some(pair.finding.nearest()?.points[1].to_array().to_vec()),
+    },
+];
+
+/// Returns the depth of a pair; `None` if it has none.
+fn known_depth(pair: &AuditedPair) -> Option<&SolidDepth> {
+    pair.finding.interference().and_then(Interference::known_depth)
+}
+
 /// Returns an audit as JSON.
 pub fn audit_json(bodies: &Bodies, options: &AuditOptions, audit: &Audit) -> Value {
     let assembly = bodies.assembly();
     let counts = audit.counts;
+    let levels = options.levels().iter();
+    let levels = levels.map(|level| json!({ "groups": level.names, "length": level.length }));
     json!({
         "parts": assembly.parts().iter().map(part_json).collect::<Vec<_>>(),
         "unit": assembly.unit(),
         "tolerance": bodies.fit().tolerance(),
         "within": options.within,
+        "levels": levels.collect::<Vec<_>>(),
+        "allow_contact": options.allow_contact,
         "counts": {
             "examined": counts.examined,
             "ignored": counts.ignored,
@@ -40,82 +117,67 @@ fn pair_json(assembly: &Assembly, pair: &AuditedPair) -> Value {
         "parts": assembly.part_names(&pair.parts),
         "finding": pair.finding.name(),
         "violation": pair.is_violation,
-        "clearance": pair.clearance,
-        "tolerance": pair.tolerance,
     });
-    if let Some(role) = assembly.pair_fit(pair.parts[0], pair.parts[1]).and_then(|fit| fit.role) {
-        object["role"] = json!(role.name());
+    for quantity in QUANTITIES.iter().filter(|quantity| !quantity.name.ends_with("point")) {
+        if let Some(values) = quantity.values(pair) {
+            let is_number = quantity.columns.len() == 1;
+            object[quantity.name] = if is_number { json!(values[0]) } else { json!(values) };
+        }
     }
-    if let PairFinding::Contained { inner, .. } = &pair.finding {
-        object["inner"] = json!(assembly.parts()[*inner].name());
+    if let Some(role) = pair_role(assembly, pair) {
+        object["role"] = json!(role);
+    }
+    if let Some(inner) = inner_part(assembly, pair) {
+        object["inner"] = json!(inner);
     }
     if let Some(found) = pair.finding.interference() {
         let bounds = found.common.bounds.map(|b| [b.low.to_array(), b.high.to_array()]);
-        if let Some(depth) = found.known_depth() {
-            object["depth"] = json!(depth.bounds());
-            object["translation"] = json!(depth.translation.to_array());
-            object["volume"] = json!(found.common.volume);
-        }
+        // Also if no tolerance suffices.
         object["least_tolerance"] = json!(found.least_tolerance);
         object["box"] = json!(bounds);
         object["point"] = json!(found.place.to_array());
     }
     if let Some(found) = pair.finding.nearest() {
-        object["distance"] = json!(found.distance);
         object["points"] = json!(found.points.map(|point| point.to_array()));
     }
     object
 }
 
+/// Returns the name of the role of a pair.
+fn pair_role(assembly: &Assembly, pair: &AuditedPair) -> Option<&'static str> {
+    let [a, b] = pair.parts;
+    Some(assembly.pair_fit(a, b)?.role?.name())
+}
+
+/// Returns the name of the part inside the other one.
+fn inner_part<'a>(assembly: &'a Assembly, pair: &AuditedPair) -> Option<&'a str> {
+    match pair.finding {
+        PairFinding::Contained { inner, .. } => Some(assembly.parts()[inner].name()),
+        _ => None,
+    }
+}
+
 /// Returns the pairs of an audit as a table. Cells without a value are empty. `x`, `y`, `z` are the
 /// [place](PairFinding::place) of the pair.
 pub fn audit_csv(assembly: &Assembly, audit: &Audit) -> String {
-    let mut table = Table::new(&[
-        "first",
-        "second",
-        "finding",
-        "violation",
-        "clearance",
-        "distance_lower",
-        "distance_upper",
-        "depth_lower",
-        "depth_upper",
-        "out_x",
-        "out_y",
-        "out_z",
-        "least_tolerance",
-        "volume_lower",
-        "volume_upper",
-        "x",
-        "y",
-        "z",
-    ]);
+    let numbers = QUANTITIES.iter().flat_map(|quantity| quantity.columns);
+    let heads = ["first", "second", "finding", "violation"].iter().chain(numbers);
+    let heads: Vec<&str> = heads.chain(&["inner", "role"]).copied().collect();
+    let mut table = Table::new(&heads);
     let parts: Vec<&str> = assembly.parts().iter().map(Part::name).collect();
     for pair in &audit.pairs {
-        let (interference, nearest) = (pair.finding.interference(), pair.finding.nearest());
-        let mut row = vec![
-            Cell::Text(parts[pair.parts[0]]),
-            Cell::Text(parts[pair.parts[1]]),
-            Cell::Text(pair.finding.name()),
-            Cell::Text(if pair.is_violation { "yes" } else { "no" }),
-            Cell::Number(pair.clearance),
-        ];
-        push_numbers(&mut row, nearest.map(|found| found.distance));
-        let depth = interference.and_then(Interference::known_depth);
-        push_numbers(&mut row, depth.map(SolidDepth::bounds));
-        push_numbers(&mut row, depth.map(|depth| depth.translation.to_array()));
-        push_numbers(&mut row, interference.and_then(|found| Some([found.least_tolerance?])));
-        push_numbers(&mut row, interference.and_then(Interference::known_volume));
-        push_numbers(&mut row, Some(pair.finding.place().to_array()));
+        let [first, second] = pair.parts.map(|part| parts[part]);
+        let violation = if pair.is_violation { "yes" } else { "no" };
+        let mut row = [first, second, pair.finding.name(), violation].map(Cell::Text).to_vec();
+        for quantity in &QUANTITIES {
+            match quantity.values(pair) {
+                Some(values) => row.extend(values.into_iter().map(Cell::Number)),
+                None => row.extend(quantity.columns.iter().map(|_| Cell::Text(""))),
+            }
+        }
+        let texts = [inner_part(assembly, pair), pair_role(assembly, pair)];
+        row.extend(texts.map(|text| Cell::Text(text.unwrap_or_default())));
         table.push_row(&row);
     }
     table.into_text()
-}
-
-/// Appends numbers, or empty cells.
-fn push_numbers<const N: usize>(row: &mut Vec<Cell>, numbers: Option<[f64; N]>) {
-    match numbers {
-        Some(numbers) => row.extend(numbers.map(Cell::Number)),
-        None => row.extend([Cell::Text(""); N]),
-    }
 }

@@ -2,10 +2,10 @@
 //!
 //! - Each pair is a topic with its numbers, a camera in front of a section plane through the place, and a picture.
 //! - Parts are components named by `AuthoringToolId`. A name that is an identifier of IFC is also the `IfcGuid`.
-//! - Identifiers are UUIDs of version 8 (RFC 9562, 5.8): FNV-1a hashes of the names. Another audit of the same parts
-//!   has the same identifiers, so that programs can update their topics.
-//! - Lengths are in metres, as BCF requires. Lengths in an unknown unit are written unchanged.
-//! - The z axis points upwards. Coordinates of files in which the y axis does, such as glTF, are rotated about x.
+//! - Identifiers are UUIDs of version 8 (RFC 9562, 5.8): FNV-1a hashes of the title and of both names, in any order.
+//!   Another audit of the same parts has the same identifiers, so that programs can update their topics.
+//! - Lengths are in metres, as BCF requires. A source without a unit is taken to be in metres.
+//! - The z axis points upwards. Coordinates of files in which another axis does, such as glTF, are rotated.
 //!
 //! Reference: buildingSMART, BCF-XML 2.1, `markup.xsd` and `visinfo.xsd`.
 
@@ -18,13 +18,14 @@ use rayon::prelude::*;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use super::clashes::{facts, headline, names, pair_cut};
+use super::clashes::{display_names, facts, headline, pair_cut};
 use super::cut::Cut;
 use super::cut::snapshot::Camera;
-use super::lines::Lines;
+use super::lines::SortedLines;
 use crate::audit::{Audit, AuditedPair};
-use crate::part::Assembly;
-use crate::units::unit_in_metres;
+use crate::part::{Assembly, Part};
+use crate::units::{UNIT_NAMES, unit_in_metres};
+use crate::watch::{Stage, Watch};
 
 /// Author of the topics.
 const AUTHOR: &str = "colltrans";
@@ -45,19 +46,25 @@ struct Topic {
     snapshot: Vec<u8>,
 }
 
-/// Returns the violations of an audit, at most [`MAX_TOPICS`], as the bytes of a BCF file. `seconds` since 1970 is the time of creation in the
-/// topics, `title` names the model in the identifiers.
+/// Returns the violations of an audit, at most [`MAX_TOPICS`], as the bytes of a BCF file. `seconds` since 1970 is the
+/// time of creation in the topics, `title` names the model in the identifiers.
 ///
 /// # Errors
-/// The package would be too large for the ZIP format.
+/// - The unit of the assembly is not listed in [`UNIT_NAMES`] ([`io::ErrorKind::InvalidInput`]).
+/// - The package would be too large for the ZIP format, or the run is cancelled.
 pub fn bcf_file(
     assembly: &Assembly,
     audit: &Audit,
     title: &str,
     seconds: u64,
+    watch: Watch,
 ) -> io::Result<Vec<u8>> {
-    let lines: Vec<OnceLock<Lines>> = assembly.parts().iter().map(|_| OnceLock::new()).collect();
+    let per_unit = metres_per_unit(assembly)
+        .map_err(|message| io::Error::new(io::ErrorKind::InvalidInput, message))?;
+    let lines: Vec<OnceLock<SortedLines>> =
+        assembly.parts().iter().map(|_| OnceLock::new()).collect();
     let all: Vec<&AuditedPair> = audit.violations().take(MAX_TOPICS).collect();
+    let tally = watch.start_stage(Stage::Pictures, all.len());
     let mut file = ZipWriter::new(Cursor::new(Vec::new()));
     let mut put = |path: &str, bytes: &[u8]| {
         file.start_file(path, SimpleFileOptions::default())?;
@@ -73,10 +80,12 @@ pub fn bcf_file(
     for (chunk, pairs) in all.chunks(TOPICS_AT_A_TIME).enumerate() {
         let draw = |(k, pair): (usize, &&AuditedPair)| {
             let index = chunk * TOPICS_AT_A_TIME + k;
-            topic(assembly, pair, &lines, [title, &utc_text(seconds)], index)
+            let texts = [title, &utc_text(seconds)];
+            let topic = topic((assembly, per_unit), pair, &lines, texts, index);
+            tally.finish_item().map(|()| topic)
         };
-        let topics: Vec<Topic> = pairs.par_iter().enumerate().map(draw).collect();
-        for Topic { id, markup, viewpoint, snapshot } in topics {
+        let topics: Result<Vec<Topic>, _> = pairs.par_iter().enumerate().map(draw).collect();
+        for Topic { id, markup, viewpoint, snapshot } in topics.map_err(io::Error::other)? {
             put(&format!("{id}/markup.bcf"), markup.as_bytes())?;
             put(&format!("{id}/viewpoint.bcfv"), viewpoint.as_bytes())?;
             put(&format!("{id}/snapshot.png"), &snapshot)?;
@@ -85,18 +94,32 @@ pub fn bcf_file(
     Ok(file.finish()?.into_inner())
 }
 
-/// Builds the topic of a pair.
+/// Returns the length of the unit of an assembly in metres, which is 1 without a unit.
+///
+/// # Errors
+/// A message if the unit is unknown.
+pub fn metres_per_unit(assembly: &Assembly) -> Result<f64, String> {
+    let Some(unit) = assembly.unit() else { return Ok(1.0) };
+    let accepted = || UNIT_NAMES.join(", ");
+    unit_in_metres(unit)
+        .ok_or_else(|| format!("unknown unit {unit}; BCF needs one of {}", accepted()))
+}
+
+/// Builds the topic of a pair in an assembly, whose unit has this length in metres.
 fn topic(
-    assembly: &Assembly,
+    (assembly, per_unit): (&Assembly, f64),
     pair: &AuditedPair,
-    lines: &[OnceLock<Lines>],
+    lines: &[OnceLock<SortedLines>],
     [title, date]: [&str; 2],
     index: usize,
 ) -> Topic {
-    let parts = names(assembly, pair);
-    let [id, view] = ["topic", "viewpoint"].map(|kind| uuid(&[title, kind, parts[0], parts[1]]));
+    let parts = pair.parts.map(|part| assembly.parts()[part].name());
+    // Another export may list the parts in another order.
+    let [first, second] = [parts[0].min(parts[1]), parts[0].max(parts[1])];
+    let [id, view] = ["topic", "viewpoint"].map(|kind| uuid(&[title, kind, first, second]));
     let kind = pair.finding.name();
-    let heading = format!("{} and {}: {kind}, {}", parts[0], parts[1], headline(assembly, pair));
+    let [a, b] = display_names(assembly, pair);
+    let heading = format!("{a} and {b}: {kind}, {}", headline(assembly, pair));
     let facts =
         facts(assembly, pair).into_iter().map(|fact| format!("{}: {}", fact.name, fact.value));
     let description = facts.collect::<Vec<_>>().join("\n");
@@ -111,11 +134,10 @@ fn topic(
          </Viewpoints>\n</Markup>\n"
     );
     let cut = pair_cut(assembly, pair);
-    let solids = pair.parts.map(|part| assembly.parts()[part].solid());
-    let lines = pair
-        .parts
-        .map(|part| lines[part].get_or_init(|| Lines::new(assembly.parts()[part].solid())));
-    let per_unit = assembly.unit().and_then(unit_in_metres).unwrap_or(1.0);
+    let solid = |part: usize| Part::solid(&assembly.parts()[part]);
+    let solids = pair.parts.map(solid);
+    let edges = |part: usize| lines[part].get_or_init(|| SortedLines::new(solid(part)));
+    let lines = pair.parts.map(edges);
     Topic {
         id,
         markup,
@@ -130,8 +152,12 @@ fn viewpoint(parts: [&str; 2], cut: &Cut, id: &str, per_unit: f64, upwards: DVec
     let Camera { toward, up, hidden } = cut.camera();
     let away = cut.radius / FIELD_OF_VIEW.1;
     let [a, b] = parts.map(component);
-    let written =
-        |v: DVec3| coordinates(if upwards == DVec3::Y { DVec3::new(v.x, -v.z, v.y) } else { v });
+    // Exact rotations, without rounding.
+    let written = |v: DVec3| match upwards {
+        DVec3::Y => coordinates([v.x, -v.z, v.y]),
+        DVec3::X => coordinates([v.y, v.z, v.x]),
+        _ => coordinates(v.to_array()),
+    };
     let [eye, at] = [(cut.at + toward * away) * per_unit, cut.at * per_unit].map(written);
     let [direction, up, hidden] = [-toward, up, hidden].map(written);
     let angle = FIELD_OF_VIEW.0;
@@ -163,8 +189,8 @@ fn component(name: &str) -> String {
 }
 
 /// Returns the elements of the coordinates of a vector.
-fn coordinates(v: DVec3) -> String {
-    format!("<X>{}</X><Y>{}</Y><Z>{}</Z>", v.x, v.y, v.z)
+fn coordinates([x, y, z]: [f64; 3]) -> String {
+    format!("<X>{x}</X><Y>{y}</Y><Z>{z}</Z>")
 }
 
 /// Returns the identifier of a list of texts.

@@ -1,29 +1,40 @@
 //! The report of an audit: one HTML file with all findings, the worst first.
 //!
 //! - Each finding has its numbers and a section through its place (module `cut`).
-//! - A click on a finding shows the pair in the viewer, and the least way out as a motion. The script also filters the
-//!   list. Without scripts the list is complete.
+//! - A click on a finding shows the pair in the viewer, a cut through it, and the shortest way out that was found as a
+//!   motion. The script also filters the list. Without scripts the list is complete.
 //! - The file contains each part once. Sections and parts are limited by `MAX_SECTION_BYTES` and
-//!   `viewer::MAX_TRIANGLES`; the worst findings come first.
-
-use std::collections::BTreeSet;
+//!   `viewer::MAX_TRIANGLES`; the worst findings come first. Names are shortened, because each entry repeats them.
 
 use colltrans::Aabb;
+use colltrans_mesh::plain::escape_control;
 use glam::DVec3;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::cut::{Cut, Measure};
-use super::{direction_name, html::STYLE, kind_colour, picture_markup, short_number, viewer};
-use crate::audit::{Audit, AuditOptions, AuditedPair, PairFinding};
+use super::{
+    direction_name, html, kind_colour, picture_markup, rounded_number, short_number, viewer,
+};
+use crate::audit::{Audit, AuditOptions, AuditedPair, ClearanceLevel, PairFinding};
 use crate::bodies::Bodies;
+use crate::error::AssemblyError;
 use crate::part::Assembly;
+use crate::watch::{Stage, Watch};
 
 /// Maximum number of listed findings.
 const MAX_FINDINGS: usize = 5_000;
 /// Number of bytes of all sections after which no more are drawn.
 const MAX_SECTION_BYTES: usize = 24_000_000;
+/// Maximum number of characters of a name in the list.
+const MAX_NAME: usize = 120;
+/// Maximum number of characters of a unit.
+const MAX_UNIT: usize = 16;
+/// Maximum number of listed clearances of groups.
+const MAX_LEVELS: usize = 20;
+/// Number of digits of a length, and their maximum if a distance and its clearance differ by little.
+const DIGITS: [i32; 2] = [4, 9];
 /// Number of sections that are drawn at a time.
 const SECTIONS_AT_A_TIME: usize = 64;
 /// Names of the findings, in the order of the report.
@@ -52,7 +63,7 @@ body { max-width: 88em; }
   #clashes #viewer { grid-column: 2; grid-row: 1; }
   #clashes #viewer .view { height: min(70vh, 44em); }
 }
-@media print { .clash:not([open]) { display: block; } .clash { break-inside: avoid; } .filter { display: none; } }
+@media print { .clash:not([open]):not([hidden]) { display: block; } .clash { break-inside: avoid; } .filter { display: none; } }
 ";
 
 /// A line of text about a finding.
@@ -64,37 +75,35 @@ pub(super) struct Fact {
 }
 
 /// Returns the report as an HTML document.
-pub fn clashes_page(bodies: &Bodies, options: &AuditOptions, audit: &Audit, title: &str) -> String {
+///
+/// # Errors
+/// [`AssemblyError::Cancelled`].
+pub fn clashes_page(
+    bodies: &Bodies,
+    options: &AuditOptions,
+    audit: &Audit,
+    title: &str,
+    watch: Watch,
+) -> Result<String, AssemblyError> {
     let assembly = bodies.assembly();
     let listed = &audit.pairs[..audit.pairs.len().min(MAX_FINDINGS)];
-    let sections = sections(assembly, listed);
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width";
-                title { (title) }
-                style { (PreEscaped(STYLE)) (PreEscaped(CLASH_STYLE)) }
-            }
-            body {
-                main {
-                    h1 { (title) }
-                    (summary(bodies, options, audit))
-                    div id="clashes" {
-                        (viewer(assembly, listed))
-                        div id="findings" {
-                            @for (k, pair) in listed.iter().enumerate() {
-                                (finding(assembly, k, pair, sections.get(k)))
-                            }
-                        }
+    let sections = sections(assembly, listed, watch)?;
+    let body = html! {
+        main {
+            h1 { (title) }
+            (summary(bodies, options, audit))
+            div id="clashes" {
+                (viewer(assembly, listed))
+                div id="findings" {
+                    @for (k, pair) in listed.iter().enumerate() {
+                        (finding(assembly, k, pair, sections.get(k)))
                     }
                 }
-                script { (PreEscaped(viewer::SCRIPT)) }
             }
         }
+        script { (PreEscaped(viewer::SCRIPT)) }
     };
-    page.into_string()
+    Ok(html::document(title, CLASH_STYLE, &body))
 }
 
 /// Returns the numbers of findings and the settings of the audit.
@@ -109,6 +118,10 @@ fn summary(bodies: &Bodies, options: &AuditOptions, audit: &Audit) -> Markup {
         count => format!("{count} pairs violate their clearance."),
     };
     let more = audit.pairs.len().saturating_sub(MAX_FINDINGS);
+    let levels = options.levels();
+    let more_levels = levels.len().saturating_sub(MAX_LEVELS);
+    let group = |names: &[String]| shortened(&names.join(", "), MAX_NAME);
+    let of = |ClearanceLevel { names: [a, b], .. }: &ClearanceLevel| [group(a), group(b)];
     html! {
         p.proof[is_clean].warn[!is_clean] { b { (violations) } }
         dl.facts {
@@ -120,6 +133,11 @@ fn summary(bodies: &Bodies, options: &AuditOptions, audit: &Audit) -> Markup {
             div { dt { "clearance" } dd { (length_text(options.within, assembly)) } }
             div { dt { "tolerance, at most" } dd { (length_text(bodies.fit().tolerance(), assembly)) } }
         }
+        @for (level, [a, b]) in levels.iter().take(MAX_LEVELS).map(|level| (level, of(level))) {
+            p.soft { "Clearance between " (a) " and " (b) ": " (length_text(level.length, assembly)) }
+        }
+        @if more_levels > 0 { p.soft { "JSON has " (more_levels) " more clearances of groups." } }
+        @if options.allow_contact { p.soft { "Parts that touch satisfy every clearance." } }
         @if counts.ignored > 0 { p.soft { (counts.ignored) " pairs are ignored or glued, and not examined." } }
         @if more > 0 {
             p.soft { "The list ends after " (MAX_FINDINGS) " findings. JSON and CSV have " (more) " more." }
@@ -131,7 +149,7 @@ fn summary(bodies: &Bodies, options: &AuditOptions, audit: &Audit) -> Markup {
 
 /// Returns the list entry of a finding.
 fn finding(assembly: &Assembly, k: usize, pair: &AuditedPair, section: Option<&String>) -> Markup {
-    let [a, b] = names(assembly, pair);
+    let [a, b] = display_names(assembly, pair);
     let kind = pair.finding.name();
     html! {
         details.clash data-kind=(kind) data-violation[pair.is_violation] open[k == 0] {
@@ -160,7 +178,12 @@ fn finding(assembly: &Assembly, k: usize, pair: &AuditedPair, section: Option<&S
 }
 
 /// Draws the sections of the findings until they have [`MAX_SECTION_BYTES`].
-fn sections(assembly: &Assembly, listed: &[AuditedPair]) -> Vec<String> {
+fn sections(
+    assembly: &Assembly,
+    listed: &[AuditedPair],
+    watch: Watch,
+) -> Result<Vec<String>, AssemblyError> {
+    let tally = watch.start_stage(Stage::Pictures, listed.len());
     let mut all = Vec::new();
     let mut bytes = 0;
     for pairs in listed.chunks(SECTIONS_AT_A_TIME) {
@@ -169,33 +192,31 @@ fn sections(assembly: &Assembly, listed: &[AuditedPair]) -> Vec<String> {
         }
         let first = all.len();
         let draw = |(k, pair): (usize, &AuditedPair)| {
-            let [a, b] = names(assembly, pair);
+            let [a, b] = display_names(assembly, pair);
             let solids = pair.parts.map(|part| assembly.parts()[part].solid());
             let label = format!("Section of {a} and {b}");
             let name = format!("cut-{}", first + k);
-            pair_cut(assembly, pair).section(
-                solids,
-                assembly.unit().unwrap_or_default(),
-                &name,
-                &label,
-            )
+            let drawn =
+                pair_cut(assembly, pair).section(solids, &unit_text(assembly), &name, &label);
+            tally.finish_item().map(|()| drawn)
         };
-        let drawn: Vec<String> = pairs.par_iter().enumerate().map(draw).collect();
+        let drawn: Result<Vec<String>, _> = pairs.par_iter().enumerate().map(draw).collect();
+        let drawn = drawn?;
         bytes += drawn.iter().map(String::len).sum::<usize>();
         all.extend(drawn);
     }
-    all
+    Ok(all)
 }
 
 /// Returns the viewer with the parts of the worst findings, as far as the page permits.
 fn viewer(assembly: &Assembly, listed: &[AuditedPair]) -> Markup {
-    let mut shown = BTreeSet::new();
+    let mut is_shown = vec![false; assembly.parts().len()];
     let mut triangles = 0;
     let mut add = |part: usize| {
         let more = assembly.parts()[part].solid().triangles().len();
-        if !shown.contains(&part) && triangles + more <= viewer::MAX_TRIANGLES {
+        if !is_shown[part] && triangles + more <= viewer::MAX_TRIANGLES {
             triangles += more;
-            shown.insert(part);
+            is_shown[part] = true;
         }
     };
     listed.iter().flat_map(|pair| pair.parts).for_each(&mut add);
@@ -203,10 +224,11 @@ fn viewer(assembly: &Assembly, listed: &[AuditedPair]) -> Markup {
     (0..assembly.parts().len()).for_each(&mut add);
     let Aabb { low, high } = assembly.bounds();
     let (middle, size) = ((low + high) / 2.0, (high - low).length());
-    let index = |part: &usize| shown.iter().position(|other| other == part);
-    let clashes = listed.iter().map(|pair| {
-        let [Some(a), Some(b)] = pair.parts.each_ref().map(index) else { return Value::Null };
-        let mut clash = clash_view(assembly, pair);
+    let shown: Vec<usize> = (0..is_shown.len()).filter(|part| is_shown[*part]).collect();
+    let clashes = listed.iter().zip(clash_views(assembly, listed)).map(|(pair, mut clash)| {
+        let [Ok(a), Ok(b)] = pair.parts.map(|part| shown.binary_search(&part)) else {
+            return Value::Null;
+        };
         clash["parts"] = json!([a, b]);
         clash
     });
@@ -215,7 +237,7 @@ fn viewer(assembly: &Assembly, listed: &[AuditedPair]) -> Markup {
         viewer::part_data(part, part.colour().unwrap_or_else(|| kind_colour(k)), middle)
     });
     let data = json!({
-        "unit": assembly.unit().unwrap_or_default(),
+        "unit": unit_text(assembly),
         "size": size,
         "parts": parts.collect::<Vec<_>>(),
         "clashes": clashes.collect::<Vec<_>>(),
@@ -226,22 +248,26 @@ fn viewer(assembly: &Assembly, listed: &[AuditedPair]) -> Markup {
     }
 }
 
-/// Returns what a viewer shows of a finding: `parts`, a `line` between the nearest points or along the least way out
-/// (`parts_by_moving`), and the `radius` of its neighbourhood. Points are relative to the middle of the assembly.
-pub fn clash_view(assembly: &Assembly, pair: &AuditedPair) -> Value {
+/// Returns what a viewer shows of findings: `parts`, a `line` between the nearest points or along the shortest way out
+/// that was found (`parts_by_moving`), the `radius` of its neighbourhood, and the `normal` of the plane of its section.
+/// Points are relative to the middle of the assembly.
+pub fn clash_views(assembly: &Assembly, pairs: &[AuditedPair]) -> impl Iterator<Item = Value> {
     let Aabb { low, high } = assembly.bounds();
     let middle = (low + high) / 2.0;
-    let Cut { at, radius, .. } = pair_cut(assembly, pair);
-    let ends = match (way_out(pair), pair.finding.nearest()) {
-        (Some(way), _) => [at, at + way],
-        (None, Some(nearest)) => nearest.points,
-        (None, None) => [at; 2],
-    };
-    json!({
-        "parts": pair.parts,
-        "line": ends.map(|end| (end - middle).to_array()),
-        "parts_by_moving": way_out(pair).is_some(),
-        "radius": radius,
+    pairs.iter().map(move |pair| {
+        let Cut { at, radius, normal, .. } = pair_cut(assembly, pair);
+        let ends = match (way_out(pair), pair.finding.nearest()) {
+            (Some(way), _) => [at, at + way],
+            (None, Some(nearest)) => nearest.points,
+            (None, None) => [at; 2],
+        };
+        json!({
+            "parts": pair.parts,
+            "line": ends.map(|end| (end - middle).to_array()),
+            "parts_by_moving": way_out(pair).is_some(),
+            "radius": radius,
+            "normal": normal.to_array(),
+        })
     })
 }
 
@@ -264,7 +290,7 @@ pub(super) fn pair_cut(assembly: &Assembly, pair: &AuditedPair) -> Cut {
         (None, Some(found)) => {
             let label = match pair.finding {
                 PairFinding::Touching(_) => String::new(),
-                _ => bounds_text(found.distance, assembly.unit().unwrap_or_default()),
+                _ => bounds_text(found.distance, &unit_text(assembly), length_digits(pair)),
             };
             Some(Measure { ends: found.points.map(|point| point - at), is_arrow: false, label })
         }
@@ -274,54 +300,71 @@ pub(super) fn pair_cut(assembly: &Assembly, pair: &AuditedPair) -> Cut {
     Cut::new(boxes, at, common, measure, assembly.up())
 }
 
-/// Returns the names of both parts.
-pub(super) fn names<'a>(assembly: &'a Assembly, pair: &AuditedPair) -> [&'a str; 2] {
-    pair.parts.map(|part| assembly.parts()[part].name())
+/// Returns the names of both parts for display: shortened, without characters that are invisible or reverse the text.
+pub(super) fn display_names(assembly: &Assembly, pair: &AuditedPair) -> [String; 2] {
+    pair.parts.map(|part| shortened(assembly.parts()[part].name(), MAX_NAME))
+}
+
+/// Returns the unit of an assembly for display; empty without a unit.
+fn unit_text(assembly: &Assembly) -> String {
+    shortened(assembly.unit().unwrap_or_default(), MAX_UNIT)
+}
+
+/// Escapes control characters, and cuts a text after `most` characters.
+fn shortened(text: &str, most: usize) -> String {
+    // A character has at most ten characters when it is escaped, so that a prefix suffices.
+    let prefix = text.char_indices().nth(most + 1).map_or(text, |(end, _)| &text[..end]);
+    let text = escape_control(prefix);
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.into_owned(),
+    }
 }
 
 /// Returns the number that ranks a finding, with its name.
 pub(super) fn headline(assembly: &Assembly, pair: &AuditedPair) -> String {
-    let unit = assembly.unit().unwrap_or_default();
+    let unit = &unit_text(assembly);
     match (pair.finding.interference(), &pair.finding) {
         (Some(found), _) => found.known_depth().map_or_else(
             || "surfaces cross".into(),
-            |depth| format!("depth {}", bounds_text(depth.bounds(), unit)),
+            |depth| format!("depth {}", bounds_text(depth.bounds(), unit, DIGITS[0])),
         ),
         (None, PairFinding::Touching(_)) => "in contact".into(),
         (None, finding) => {
             let distance = finding.nearest().map_or([0.0; 2], |found| found.distance);
-            format!("distance {}", bounds_text(distance, unit))
+            format!("distance {}", bounds_text(distance, unit, length_digits(pair)))
         }
     }
 }
 
 /// Returns all numbers of a finding.
 pub(super) fn facts(assembly: &Assembly, pair: &AuditedPair) -> Vec<Fact> {
-    let unit = assembly.unit().unwrap_or_default();
-    let [a, _] = names(assembly, pair);
+    let unit = &unit_text(assembly);
+    let [a, _] = display_names(assembly, pair);
+    let digits = length_digits(pair);
     let mut facts = Vec::new();
     let mut push = |name, value| facts.push(Fact { name, value });
     if let PairFinding::Contained { inner, .. } = &pair.finding {
-        push("inside the other part", assembly.parts()[*inner].name().to_owned());
+        push("inside the other part", shortened(assembly.parts()[*inner].name(), MAX_NAME));
     }
     if let Some(found) = pair.finding.interference()
         && let Some(depth) = found.known_depth()
     {
-        push("depth", bounds_text(depth.bounds(), unit));
+        push("depth", bounds_text(depth.bounds(), unit, DIGITS[0]));
         let way = direction_name(depth.direction);
         push(
             "shortest way out found",
             format!("{a} by {} along {way}", length_text(depth.upper, assembly)),
         );
         let cubic = if unit.is_empty() { String::new() } else { format!("{unit}³") };
-        push("common volume", bounds_text(found.common.volume, &cubic));
+        push("common volume", bounds_text(found.common.volume, &cubic, DIGITS[0]));
     }
     if let Some(found) = pair.finding.nearest() {
-        push("distance", bounds_text(found.distance, unit));
+        push("distance", bounds_text(found.distance, unit, digits));
     }
     let [x, y, z] = pair.finding.place().to_array().map(short_number);
     push("place", with_unit(&format!("({x}, {y}, {z})"), unit));
-    push("required clearance", length_text(pair.clearance, assembly));
+    push("required clearance", with_unit(&rounded_number(pair.clearance, digits), unit));
     push("tolerance", length_text(pair.tolerance, assembly));
     if let Some(role) = assembly.pair_fit(pair.parts[0], pair.parts[1]).and_then(|fit| fit.role) {
         push("role", role.name().into());
@@ -331,19 +374,31 @@ pub(super) fn facts(assembly: &Assembly, pair: &AuditedPair) -> Vec<Fact> {
 
 /// Formats a length in the unit of the assembly.
 fn length_text(length: f64, assembly: &Assembly) -> String {
-    with_unit(&short_number(length), assembly.unit().unwrap_or_default())
+    with_unit(&short_number(length), &unit_text(assembly))
 }
 
-/// Formats bounds with four digits: as one number if both round to it, otherwise rounded outwards.
-fn bounds_text([lower, upper]: [f64; 2], unit: &str) -> String {
-    let (from, to) = (short_number(lower), short_number(upper));
+/// Returns the number of digits of the distance and the clearance of a pair. A distance that violates the clearance
+/// differs from it in print, if nine digits suffice.
+fn length_digits(pair: &AuditedPair) -> i32 {
+    let [fewest, most] = DIGITS;
+    let Some(found) = pair.finding.nearest().filter(|_| pair.is_violation) else { return fewest };
+    let differ = |digits: &i32| {
+        let [upper, clearance] = [found.distance[1], pair.clearance];
+        rounded_number(upper, *digits) != rounded_number(clearance, *digits)
+    };
+    (fewest..most).find(differ).unwrap_or(most)
+}
+
+/// Formats bounds with a number of digits: as one number if both round to it, otherwise rounded outwards.
+fn bounds_text([lower, upper]: [f64; 2], unit: &str, digits: i32) -> String {
+    let (from, to) = (rounded_number(lower, digits), rounded_number(upper, digits));
     if from == to {
         return with_unit(&from, unit);
     }
     let outwards = |x: f64, round: fn(f64) -> f64| {
-        let scale = 10_f64.powf(3.0 - x.abs().log10().floor());
+        let scale = 10_f64.powf(f64::from(digits - 1) - x.abs().log10().floor());
         let rounded = round(x * scale) / scale;
-        short_number(if rounded.is_finite() { rounded } else { x })
+        rounded_number(if rounded.is_finite() { rounded } else { x }, digits)
     };
     with_unit(&format!("{} to {}", outwards(lower, f64::floor), outwards(upper, f64::ceil)), unit)
 }
@@ -351,4 +406,25 @@ fn bounds_text([lower, upper]: [f64; 2], unit: &str) -> String {
 /// Appends a unit, if there is one.
 fn with_unit(number: &str, unit: &str) -> String {
     format!("{number} {unit}").trim_end().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_and_invisible_names_are_cut_and_escaped() {
+        assert_eq!(shortened("bolt\u{202e}x", 120), "bolt\\u{202e}x");
+        assert_eq!(shortened("größer", 6), "größer");
+        assert_eq!(shortened("größere", 6), "größer…");
+        assert_eq!(shortened(&"\u{0}".repeat(1_000_000), 8), "\\u{0}\\u{…");
+    }
+
+    #[test]
+    fn bounds_are_rounded_outwards_to_their_digits() {
+        assert_eq!(bounds_text([0.25; 2], "mm", 4), "0.25 mm");
+        assert_eq!(bounds_text([1.23454, 1.25], "", 4), "1.234 to 1.25");
+        assert_eq!(bounds_text([0.49998; 2], "mm", 4), "0.5 mm");
+        assert_eq!(bounds_text([0.49998; 2], "mm", 5), "0.49998 mm");
+    }
 }

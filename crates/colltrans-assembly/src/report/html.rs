@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::{Analysis, Report, after, cover, sheet, tables, viewer};
 
 /// Style sheet of the report.
-pub(super) const STYLE: &str = include_str!("../../assets/report.css");
+const STYLE: &str = include_str!("../../assets/report.css");
 
 /// Returns the report as an HTML document.
 pub fn report_page(f: &Analysis, title: &str) -> String {
@@ -26,6 +26,20 @@ pub fn report_page(f: &Analysis, title: &str) -> String {
         }
     }
     let sheets: Vec<Markup> = drawn.par_iter().map(|again| sheet::step_page(&r, again)).collect();
+    let body = html! {
+        main {
+            (cover::cover_page(&r, title))
+            (viewer::viewer_section(f))
+            @for sheet in sheets { (sheet) }
+            (after::after_section(&r))
+        }
+        (tables::all_tables(f))
+    };
+    document(title, "", &body)
+}
+
+/// Returns a document with the style sheet of all reports, a style sheet of its own, and a body.
+pub(super) fn document(title: &str, style: &'static str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -33,17 +47,9 @@ pub fn report_page(f: &Analysis, title: &str) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width";
                 title { (title) }
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(style)) }
             }
-            body {
-                main {
-                    (cover::cover_page(&r, title))
-                    (viewer::viewer_section(f))
-                    @for sheet in sheets { (sheet) }
-                    (after::after_section(&r))
-                }
-                (tables::all_tables(f))
-            }
+            body { (body) }
         }
     };
     page.into_string()

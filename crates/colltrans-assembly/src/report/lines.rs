@@ -14,8 +14,8 @@ pub(super) struct Lines(Vec<Line>);
 struct Line {
     /// Vertices of the edge.
     ends: [u32; 2],
-    /// The facets on both sides; `None` on a boundary.
-    faces: Option<[u32; 2]>,
+    /// A facet at the edge, and the one on the other side; `None` on a boundary.
+    faces: (u32, Option<u32>),
 }
 
 impl Lines {
@@ -29,8 +29,7 @@ impl Lines {
                     [f, g]
                         if facet_normal(solid, f).dot(facet_normal(solid, g))
                             > MIN_COPLANAR_COSINE => {}
-                    [f, g] => all.push(Line { ends, faces: Some([f, g]) }),
-                    _ => all.push(Line { ends, faces: None }),
+                    _ => all.push(Line { ends, faces: (pair[0], pair.get(1).copied()) }),
                 }
             }
         }
@@ -39,14 +38,46 @@ impl Lines {
 
     /// Returns the edges to draw for a view direction: sharp edges, silhouettes and boundaries.
     pub(super) fn visible_lines(&self, solid: &Solid, toward: DVec3) -> Vec<[DVec3; 2]> {
-        let drawn = |line: &&Line| {
-            let Some(faces) = line.faces else { return true };
-            let [m, n] = faces.map(|face| facet_normal(solid, face));
+        self.0.iter().filter_map(|line| line.visible_ends(solid, toward)).collect()
+    }
+}
+
+/// Edges in the order of their first facets.
+#[cfg(feature = "bcf")]
+pub(super) struct SortedLines(Vec<Line>);
+
+#[cfg(feature = "bcf")]
+impl SortedLines {
+    /// Finds the edges of a solid.
+    pub(super) fn new(solid: &Solid) -> Self {
+        let Lines(mut all) = Lines::new(solid);
+        all.sort_by_key(|line| line.faces.0);
+        Self(all)
+    }
+
+    /// Returns those [visible lines](Lines::visible_lines) whose first facet is in a range.
+    pub(super) fn visible_lines_of(
+        &self,
+        solid: &Solid,
+        toward: DVec3,
+        facets: &std::ops::Range<usize>,
+    ) -> impl Iterator<Item = [DVec3; 2]> {
+        let place = |facet: usize| self.0.partition_point(|line| (line.faces.0 as usize) < facet);
+        let lines = &self.0[place(facets.start)..place(facets.end)];
+        lines.iter().filter_map(move |line| line.visible_ends(solid, toward))
+    }
+}
+
+impl Line {
+    /// Returns the ends of the edge; `None` if it is not drawn for a view direction.
+    fn visible_ends(&self, solid: &Solid, toward: DVec3) -> Option<[DVec3; 2]> {
+        let (face, other) = self.faces;
+        let is_drawn = other.is_none_or(|other| {
+            let [m, n] = [face, other].map(|face| facet_normal(solid, face));
             let [x, y] = [m, n].map(|n| n.dot(toward) > 0.0);
             (x || y) && (n.dot(m) < SMOOTH_COSINE || x != y)
-        };
-        let corner = |v: u32| solid.vertices()[v as usize];
-        self.0.iter().filter(drawn).map(|line| line.ends.map(corner)).collect()
+        });
+        is_drawn.then(|| self.ends.map(|v| solid.vertices()[v as usize]))
     }
 }
 

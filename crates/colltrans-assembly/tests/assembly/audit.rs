@@ -1,7 +1,8 @@
 //! Audits: boxes against their closed forms, roles and tolerances, and tables.
 
 use colltrans_assembly::audit::{
-    Audit, AuditOptions, AuditedPair, PairFinding, audit, audit_csv, audit_json, examine_pair,
+    Audit, AuditOptions, AuditedPair, PairFinding, QUANTITIES, audit, audit_csv, audit_json,
+    examine_pair,
 };
 use colltrans_assembly::roles::{PairFit, Role};
 use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch};
@@ -348,9 +349,85 @@ fn hostile_names_stay_in_their_cells() {
         lines[1].starts_with("'=1+1,\"a,\"\"b\"\"\\n<script>\",interfering,yes,0,,,0."),
         "{table}"
     );
+    assert!(lines[1].ends_with(",0.000001,,,,,"), "{table}");
     let json = audit_json(&bodies, &within(0.0), &found);
     assert_eq!(json["pairs"][0]["parts"], serde_json::json!(names));
     assert_eq!(json["counts"]["violations"], 1);
+}
+
+/// Returns the header and the rows of a table without quotes.
+fn table_rows(table: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
+    let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    (lines.next().unwrap(), lines.collect())
+}
+
+#[test]
+fn columns_hold_the_numbers_of_the_json() {
+    let press = PairFit { role: Some(Role::Press), tolerance: Some(0.05) };
+    let mut parts = pressed().parts().to_vec();
+    parts.push(part("grain", &[cuboid([0.5, 0.5, 1.0], [0.75, 0.75, 1.25])]));
+    let assembly = Assembly::new(parts).unwrap().with_pair([&["pin"], &["body"]], press).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+    let options = within(0.1).with_level(&assembly, [&["lid"], &["p*"]], 0.3).unwrap();
+    let options = options.with_allow_contact(true);
+    let found = audit(&bodies, &options, Watch::default()).unwrap();
+    let json = audit_json(&bodies, &options, &found);
+    let levels = serde_json::json!([{ "groups": [["lid"], ["p*"]], "length": 0.3 }]);
+    assert_eq!((&json["levels"], &json["allow_contact"]), (&levels, &true.into()));
+    let table = audit_csv(&assembly, &found);
+    let (heads, rows) = table_rows(&table);
+    assert_eq!(
+        heads[..6],
+        ["first", "second", "finding", "violation", "clearance", "distance_lower"]
+    );
+    assert_eq!(rows.len(), found.pairs.len());
+    let mut kinds = std::collections::BTreeSet::new();
+    for ((row, pair), json) in rows.iter().zip(&found.pairs).zip(json["pairs"].as_array().unwrap())
+    {
+        assert_eq!(row.len(), heads.len());
+        let cell = |name: &str| row[heads.iter().position(|head| *head == name).unwrap()];
+        let text = |name: &str| json[name].as_str().unwrap_or_default();
+        assert_eq!(
+            (cell("finding"), cell("inner"), cell("role")),
+            (text("finding"), text("inner"), text("role"))
+        );
+        for quantity in &QUANTITIES {
+            let cells: Vec<&str> = quantity.columns.iter().map(|column| cell(column)).collect();
+            let values: Vec<String> =
+                quantity.values(pair).unwrap_or_default().iter().map(f64::to_string).collect();
+            let empty = vec![""; quantity.columns.len()];
+            assert_eq!(
+                cells,
+                if values.is_empty() { empty } else { values.iter().map(String::as_str).collect() }
+            );
+            let known = match quantity.name {
+                "point" => json.get("point").unwrap_or_else(|| &json["points"][0]),
+                "other_point" => &json["points"][1],
+                name => &json[name],
+            };
+            let numbers: Vec<f64> = match known {
+                serde_json::Value::Array(all) => all.iter().map(|x| x.as_f64().unwrap()).collect(),
+                other => other.as_f64().into_iter().collect(),
+            };
+            assert_eq!(numbers, quantity.values(pair).unwrap_or_default(), "{}", quantity.name);
+        }
+        kinds.insert(pair.finding.name());
+    }
+    assert_eq!(kinds.into_iter().collect::<Vec<_>>(), ["apart", "contained", "interfering"]);
+}
+
+#[test]
+fn pairs_that_lack_most_of_their_clearance_come_first() {
+    let boxes = [[0.0, 1.0], [1.25, 2.0], [4.0, 5.0]];
+    let names = ["a", "b", "c"];
+    let parts = names
+        .iter()
+        .zip(boxes)
+        .map(|(name, [low, high])| part(name, &[cuboid([low, 0.0, 0.0], [high, 1.0, 1.0])]));
+    let assembly = Assembly::new(parts.collect()).unwrap();
+    let options = within(0.5).with_level(&assembly, [&["b"], &["c"]], 10.0).unwrap();
+    let found = audited(&assembly, 1e-6, &options);
+    assert_eq!(found.pairs.iter().map(|pair| pair.parts).collect::<Vec<_>>(), [[1, 2], [0, 1]]);
 }
 
 #[test]

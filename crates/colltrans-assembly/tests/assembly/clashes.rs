@@ -31,7 +31,8 @@ fn audited(assembly: &Assembly, within: f64) -> (Audit, String) {
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
     let options = AuditOptions::default().with_within(within).unwrap();
     let found = audit(&bodies, &options, Watch::default()).unwrap();
-    let page = clashes::clashes_page(&bodies, &options, &found, "a <b>title</b>");
+    let page = clashes::clashes_page(&bodies, &options, &found, "a <b>title</b>", Watch::default())
+        .unwrap();
     (found, page)
 }
 
@@ -88,6 +89,44 @@ fn clean_assembly_has_a_report_without_findings() {
 }
 
 #[test]
+fn settings_that_decide_are_in_the_report() {
+    let assembly = row(["left", "middle", "right"]);
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let options = AuditOptions::default().with_allow_contact(true);
+    let options = options.with_level(&assembly, [&["mid*"], &["right"]], 0.250_000_01).unwrap();
+    let found = audit(&bodies, &options, Watch::default()).unwrap();
+    let page = clashes::clashes_page(&bodies, &options, &found, "row", Watch::default()).unwrap();
+    assert!(page.contains("Clearance between mid* and right: 0.25 mm"), "{page}");
+    assert!(page.contains("Parts that touch satisfy every clearance."));
+    // The distance and the clearance differ in print.
+    let entry = page.split("<details class=\"clash\"").nth(2).unwrap();
+    assert!(
+        entry.contains("distance 0.25 mm") && entry.contains("<dd>0.25000001 mm</dd>"),
+        "{entry}"
+    );
+}
+
+#[test]
+fn long_names_do_not_multiply_in_a_report_and_in_topics() {
+    let long = ["l", "m", "r"].map(|name| name.repeat(100_000) + "\u{202e}");
+    let assembly = row(long.each_ref().map(String::as_str)).with_unit("unit".repeat(1_000));
+    let (found, page) = audited(&assembly, 1.0);
+    assert!(found.pairs.len() == 2 && page.contains(&("l".repeat(120) + "…")));
+    // Each name once for the viewer, and its script.
+    let (_, short) = audited(&row(["l", "m", "r"]), 1.0);
+    assert!(page.len() < short.len() + 310_000, "{} {}", page.len(), short.len());
+    assert!(!page[..page.find("viewer-data").unwrap()].contains('\u{202e}'));
+    let assembly = assembly.with_unit("mm");
+    let files = unpacked(&bcf::bcf_file(&assembly, &found, "row", 0, Watch::default()).unwrap());
+    assert!(
+        files
+            .iter()
+            .filter(|(path, _)| path.ends_with("markup.bcf"))
+            .all(|(_, bytes)| bytes.len() < 2_000)
+    );
+}
+
+#[test]
 fn hostile_names_in_a_report_are_text() {
     let (_, page) = audited(&row(HOSTILE), 1.0);
     assert!(!page.contains("<script>alert") && !page.contains("<b>title"));
@@ -127,8 +166,11 @@ fn bcf_file_has_a_topic_for_each_violation() {
     for names in [["left", "middle", "right"], HOSTILE] {
         let assembly = row(names);
         let (found, _) = audited(&assembly, 1.0);
-        let bytes = bcf::bcf_file(&assembly, &found, "row", 951_782_400).unwrap();
-        assert_eq!(bytes, bcf::bcf_file(&assembly, &found, "row", 951_782_400).unwrap());
+        let bytes = bcf::bcf_file(&assembly, &found, "row", 951_782_400, Watch::default()).unwrap();
+        assert_eq!(
+            bytes,
+            bcf::bcf_file(&assembly, &found, "row", 951_782_400, Watch::default()).unwrap()
+        );
         let files = unpacked(&bytes);
         assert_eq!(files.len(), 1 + 3 * 2);
         assert_eq!(files[0].0, "bcf.version");
@@ -155,7 +197,10 @@ fn bcf_file_has_a_topic_for_each_violation() {
             let shown = names.map(|name| {
                 name.replace(['\u{1b}', '\u{0}'], "\u{fffd}").replace(['<', '>', '&', '"'], "")
             });
-            assert!(text("Title").contains(&shown[1]), "{}", text("Title"));
+            // Titles have the names with escapes.
+            let title =
+                colltrans_mesh::plain::escape_control(names[1]).replace(['<', '>', '&', '"'], "");
+            assert!(text("Title").contains(&title), "{}", text("Title"));
             let viewpoints = markup.first_child("Viewpoints").unwrap();
             assert_eq!(viewpoints.get("Guid"), view.get("Guid"));
             assert_eq!(children(&view), ["Components", "PerspectiveCamera", "ClippingPlanes"]);
@@ -179,10 +224,61 @@ fn bcf_file_has_a_topic_for_each_violation() {
 }
 
 #[test]
+fn topics_keep_their_identifiers_if_the_parts_are_listed_in_another_order() {
+    let ids = |order: [usize; 3]| {
+        let row = row(["left", "middle", "right"]);
+        let parts = order.map(|k| row.parts()[k].clone()).to_vec();
+        let assembly = Assembly::new(parts).unwrap().with_unit("mm");
+        let (found, _) = audited(&assembly, 1.0);
+        let files =
+            unpacked(&bcf::bcf_file(&assembly, &found, "row", 0, Watch::default()).unwrap());
+        files.into_iter().map(|(path, _)| path).collect::<BTreeSet<_>>()
+    };
+    assert_eq!(ids([0, 1, 2]), ids([2, 1, 0]));
+    assert_eq!(ids([0, 1, 2]).len(), 7);
+}
+
+#[test]
+fn bcf_file_needs_a_known_unit() {
+    let (assembly, (found, _)) = (row(["a", "b", "c"]), audited(&row(["a", "b", "c"]), 0.0));
+    let refused =
+        bcf::bcf_file(&assembly.clone().with_unit("yd"), &found, "row", 0, Watch::default())
+            .unwrap_err();
+    assert_eq!(refused.kind(), std::io::ErrorKind::InvalidInput);
+    assert!(
+        refused.to_string().starts_with("unknown unit yd; BCF needs one of m, mm, cm"),
+        "{refused}"
+    );
+    let without = Assembly::new(assembly.parts().to_vec()).unwrap();
+    assert_eq!(bcf::metres_per_unit(&without), Ok(1.0));
+}
+
+#[test]
+fn bcf_coordinates_have_the_z_axis_upwards() {
+    use glam::DVec3;
+    let location = |up: DVec3| {
+        let assembly = row(["a", "b", "c"]).with_unit("m").with_up(up);
+        let (found, _) = audited(&assembly, 0.0);
+        let files =
+            unpacked(&bcf::bcf_file(&assembly, &found, "row", 0, Watch::default()).unwrap());
+        let view = Element::parse(std::str::from_utf8(&files[2].1).unwrap()).unwrap();
+        let planes = view.first_child("ClippingPlanes").unwrap();
+        let at = planes.first_child("ClippingPlane").unwrap().first_child("Location").unwrap();
+        let at =
+            ["X", "Y", "Z"].map(|name| at.first_child(name).unwrap().text.parse::<f64>().unwrap());
+        (DVec3::from_array(at), found.pairs[0].finding.place())
+    };
+    for up in [DVec3::X, DVec3::Y, DVec3::Z] {
+        let (written, place) = location(up);
+        assert_eq!((written.z, written.length()), (place.dot(up), place.length()), "{up}");
+    }
+}
+
+#[test]
 fn bcf_camera_looks_at_the_place_in_metres() {
     let assembly = row(["0123456789abcdefghij_$", "middle", "right"]);
     let (found, _) = audited(&assembly, 0.0);
-    let files = unpacked(&bcf::bcf_file(&assembly, &found, "row", 0).unwrap());
+    let files = unpacked(&bcf::bcf_file(&assembly, &found, "row", 0, Watch::default()).unwrap());
     let view = Element::parse(std::str::from_utf8(&files[2].1).unwrap()).unwrap();
     let vector = |path: [&'static str; 2], from: &Element| {
         let vector = from.first_child(path[0]).unwrap().first_child(path[1]).unwrap();

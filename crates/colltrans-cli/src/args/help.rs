@@ -551,12 +551,15 @@ Findings, the worst first:
   touching     they are at most the tolerance apart, or overlap within it, or their role permits it
   apart        they are nearer than the clearance
 Text lists the violations: interfering (`by` the tolerance that would suffice), contained, or nearer
-than the clearance. Parts that touch
-violate a clearance above 0, except with --allow-contact. Pairs with a role or a tolerance of their
-own have no clearance. Pairs that are ignored or glued are left out.
+than the clearance. Parts that touch violate a clearance that is larger than their distance, except
+with --allow-contact. Pairs with a role or a tolerance of their own (--press, --soft, --thread,
+--snap, --fit) have no clearance, unless a --within names both parts. Pairs that are ignored or
+glued are left out.
 
 With --json one object:
-  parts unit tolerance notes   as of `assembly`; within is the clearance
+  parts unit tolerance notes   as of `assembly`
+  within, levels, allow_contact   the clearance, those of groups ({\"groups\", \"length\"}), and whether
+          parts that touch satisfy them
   counts  {\"examined\", \"ignored\", \"interfering\", \"contained\", \"touching\", \"near\", \"violations\"}
   pairs   [{\"parts\": [a, b], \"finding\", \"violation\", \"clearance\", \"tolerance\", \"role\"}] with
           \"distance\", \"points\" (of touching, apart) or \"depth\", \"translation\", \"volume\", \"box\",

@@ -62,7 +62,7 @@ fn write_files(
 ) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|e| Failure::write_error(folder.display(), &e))?;
     let mut outputs = Outputs::default();
-    let mut put = |name: &str, bytes: &[u8]| outputs.write(folder.join(name), bytes);
+    let mut put = |name: &str, bytes: &[u8]| outputs.write(&folder.join(name), bytes);
     let title = source_title(&arguments.source);
     put("report.html", html::report_page(findings, &title).as_bytes())?;
     put("disassembly.glb", &glb::plan_animation(findings.bodies.assembly(), &findings.plan))?;

@@ -106,6 +106,10 @@ fn json_and_table_have_all_pairs() {
     let findings: Vec<&str> = pairs.iter().map(|pair| pair["finding"].as_str().unwrap()).collect();
     assert_eq!(findings, ["interfering", "contained", "touching"]);
     assert_eq!((&found["unit"], &found["within"]), (&"mm".into(), &0.0.into()));
+    assert_eq!(
+        (&found["levels"], &found["allow_contact"]),
+        (&serde_json::json!([]), &false.into())
+    );
     assert_eq!(pairs[1]["inner"], "grain");
     assert_eq!(found["counts"]["violations"], 2);
     let bounds: [f64; 2] = serde_json::from_value(pairs[0]["depth"].clone()).unwrap();
@@ -116,6 +120,8 @@ fn json_and_table_have_all_pairs() {
     assert!(lines[0].starts_with("first,second,finding,violation,clearance,distance_lower"));
     assert!(lines[1].starts_with("low,high,interfering,yes,0,,,0.2"), "{table}");
     assert!(lines[3].starts_with("near,on,touching,no,0,0,0,,,"), "{table}");
+    assert!(lines[0].ends_with(",x,y,z,tolerance,other_x,other_y,other_z,inner,role"), "{table}");
+    assert!(lines[2].ends_with(",,,,grain,"), "{table}");
     let columns = lines[0].split(',').count();
     assert!(lines.iter().all(|line| line.split(',').count() == columns), "{table}");
     let one = text(folder.path(), &["cubes.toml", "--json", "--threads", "1"], 1);
@@ -180,6 +186,38 @@ fn assembly_names_the_interference_of_overlapping_pairs() {
     let found = support::answered(folder.path(), &["assembly", "cubes.toml"]);
     assert!(found.contains("  low, high by 0.250001: interfering, depth 0.25"), "{found}");
     assert!(found.contains(": grain contained, depth 0.5"), "{found}");
+}
+
+#[test]
+fn settings_are_in_the_text() {
+    let folder = cubes();
+    let words = ["--within", "2", "--within", "0.25", "--within", "n*,low=0.4", "--allow-contact"];
+    let [found, _] = text(folder.path(), &[&["cubes.toml"][..], &words].concat(), 1);
+    assert!(
+        found.contains("\nclearance: 0.25, contacts permitted\nclearance of n* and low: 0.4\n"),
+        "{found}"
+    );
+}
+
+#[test]
+fn outputs_are_checked_before_the_work() {
+    let folder = cubes();
+    let place = folder.path();
+    // The source does not exist; the outputs are examined first.
+    let same = ["nowhere", "--csv", "same", "--bcf", "./same"];
+    refused(place, &same, 2, &["same and ./same are one output file; give them two names"]);
+    let names = || std::fs::read_dir(place).unwrap().count();
+    let before = names();
+    let files = ["cubes.toml", "--csv", "pairs.csv", "--bcf", "none/clashes.bcf"];
+    refused(place, &files, 5, &["none/clashes.bcf: cannot be written"]);
+    assert_eq!(names(), before, "no file is written");
+    std::fs::write(place.join("yard.toml"), "unit = 'yd'\n[[part]]\nfile = 'cube.off'\n").unwrap();
+    let yard = ["yard.toml", "--bcf", "clashes.bcf"];
+    refused(place, &yard, 3, &["clashes.bcf: unknown unit yd; BCF needs one of m, mm, cm"]);
+    let [_, message] = text(place, &["cube.off", "--bcf", "clashes.bcf"], 0);
+    assert!(message.contains(
+        "note: clashes.bcf: the source has no unit; its coordinates are taken to be in metres"
+    ));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use colltrans_assembly::liaisons::Liaison;
 use colltrans_assembly::map::RemovalMap;
 use colltrans_assembly::matrix::ContactMatrix;
 use colltrans_assembly::plan::Plan;
-use colltrans_assembly::report::clashes::clash_view;
+use colltrans_assembly::report::clashes::clash_views;
 use colltrans_assembly::start::Start;
 use colltrans_assembly::{Assembly, Bodies, record as library_record};
 use serde_json::json;
@@ -108,7 +108,7 @@ pub(crate) fn plan_answer(bodies: &Bodies, plan: &Plan, directions: usize) -> An
 
 /// Returns the record of an audit, and for each of its pairs what the view shows.
 pub(crate) fn audit_answer(bodies: &Bodies, options: &AuditOptions, found: &Audit) -> Answer {
-    let views = found.pairs.iter().map(|pair| clash_view(bodies.assembly(), pair));
+    let views = clash_views(bodies.assembly(), &found.pairs);
     Answer::from_facts(&json!({
         "audit": audit_json(bodies, options, found),
         "views": views.collect::<Vec<_>>(),

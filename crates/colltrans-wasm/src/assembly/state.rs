@@ -244,8 +244,9 @@ impl State {
         let Some((options, found)) = audit else {
             return Err("there is no audit yet; ask for an audit first".to_owned().into());
         };
-        let page = clashes::clashes_page(bodies, options, found, title).into_bytes();
-        Ok(Answer { numbers: page, ..Answer::from_facts(&json!({ "title": title })) })
+        let page = clashes::clashes_page(bodies, options, found, title, Watch::default());
+        let numbers = page.map_err(|error| error.to_string())?.into_bytes();
+        Ok(Answer { numbers, ..Answer::from_facts(&json!({ "title": title })) })
     }
 }
 

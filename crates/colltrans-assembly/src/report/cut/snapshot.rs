@@ -5,12 +5,12 @@
 //! - Material in the plane covers all of this. A sample is in a body if the outlines of the body have a winding number
 //!   there, and in the common part if both have one.
 
-use colltrans::Solid;
+use colltrans::{Aabb, Solid};
 use colltrans_picture::{CONTACT, Frame, INK, Raster, SHADES, View};
 use glam::{DVec2, DVec3};
 
-use super::{CUT_SHADES, Cut, Outline, PAINTS, SIZE, visible_arrow};
-use crate::report::lines::Lines;
+use super::{CUT_SHADES, Cut, Outline, PAINTS, SIZE, facets_in, height_range, visible_arrow};
+use crate::report::lines::SortedLines;
 
 /// Samples per pixel of a PNG picture, along each axis, as in [`Raster`].
 const SAMPLES_PER_PIXEL: usize = 2;
@@ -23,7 +23,7 @@ pub(in crate::report) struct Camera {
     pub(in crate::report) toward: DVec3,
     /// Unit vector that points up on the picture.
     pub(in crate::report) up: DVec3,
-    /// Unit normal of the plane. What lies on this side is hidden.
+    /// Unit normal of the plane, towards the hidden side.
     pub(in crate::report) hidden: DVec3,
 }
 
@@ -42,7 +42,11 @@ impl Cut {
     }
 
     /// Draws what is behind the plane, with the outlines in the plane, as PNG.
-    pub(in crate::report) fn snapshot(&self, solids: [&Solid; 2], lines: [&Lines; 2]) -> Vec<u8> {
+    pub(in crate::report) fn snapshot(
+        &self,
+        solids: [&Solid; 2],
+        lines: [&SortedLines; 2],
+    ) -> Vec<u8> {
         let Camera { toward, up, .. } = self.camera();
         let view = View::looking_along(toward, up);
         let scale = 0.5 * SIZE.y / self.radius;
@@ -52,9 +56,22 @@ impl Cut {
         };
         let window = Frame { low: DVec2::ZERO, high: SIZE };
         let (mut surfaces, mut marks) = (Raster::new(window), Raster::new(window));
+        // Directions of the page and their largest coordinates in it, and the plane.
+        let right = up.cross(toward);
+        let half = 0.5 * SIZE / scale;
+        let is_shown = |within: &Aabb| {
+            let meets = |axis: DVec3, half: f64| {
+                let [low, high] = height_range(within, self.at, axis);
+                low <= half && high >= -half
+            };
+            height_range(within, self.at, self.normal)[0] <= 0.0
+                && meets(right, 1.01 * half.x)
+                && meets(up, 1.01 * half.y)
+        };
+        let facets = solids.map(|solid| facets_in(solid, is_shown));
         for (k, solid) in solids.iter().enumerate() {
-            for (t, corners) in solid.triangles().iter().enumerate() {
-                let corners = corners.map(|v| solid.vertices()[v as usize] - self.at);
+            for t in facets[k].iter().cloned().flatten() {
+                let corners = solid.triangles()[t].map(|v| solid.vertices()[v as usize] - self.at);
                 let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
                 let normal = normal.normalize_or_zero();
                 let facing = normal.dot(toward);
@@ -69,8 +86,9 @@ impl Cut {
                 }
             }
         }
-        for (solid, lines) in solids.iter().zip(lines) {
-            for edge in lines.visible_lines(solid, toward) {
+        for (k, (solid, lines)) in solids.iter().zip(lines).enumerate() {
+            let near = |facets| lines.visible_lines_of(solid, toward, facets);
+            for edge in facets[k].iter().flat_map(near) {
                 let behind = part_below(&edge.map(|end| end - self.at), self.normal);
                 if let [from, to, ..] = behind[..] {
                     let [seen, _] = surfaces.split([from, to].map(on_page), 1.5);
@@ -239,7 +257,7 @@ mod tests {
     fn picture_shows_both_parts_and_their_common_part() {
         let (parts, cut) = overlapping_boxes();
         let solids = parts.each_ref().map(Part::solid);
-        let lines = solids.map(Lines::new);
+        let lines = solids.map(SortedLines::new);
         let png = cut.snapshot(solids, [&lines[0], &lines[1]]);
         let mut reader = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];

@@ -18,9 +18,9 @@ use std::cmp::Ordering;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use colltrans::solid::{
-    CommonPart, Overlap, Relation, SolidDepth, SolidPenetration, SurfaceDistance, VolumeOptions,
+    CommonPart, Overlap, PreparedPair, Relation, SolidDepth, SurfaceDistance, VolumeOptions,
 };
-use colltrans::{Aabb, MAX_MAGNITUDE, Pair, Pose, QueryError, Solid};
+use colltrans::{Aabb, MAX_MAGNITUDE, Pair, Pose, QueryError};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -419,6 +419,7 @@ fn pair_finding(
     let of = parts.map(|k| &bodies.assembly().parts()[k]);
     let [a, b] = of.map(|part| part.solid().at(Pose::IDENTITY));
     let pair = Pair::new(a, b)?;
+    let pair = PreparedPair::new(&pair)?;
     let tolerance = bodies.pair_tolerance(parts);
     let may_cross = bodies.tolerated_contacts(parts) == Some(PairTolerance::Crossing);
     let overlaps = bodies.overlaps(parts[0], parts[1]);
@@ -480,7 +481,7 @@ fn separates_within(bodies: &Bodies, parts: [usize; 2], found: &SurfaceDistance)
 }
 
 /// Returns a point of two bodies: of the surface of the inner one, or else of both surfaces.
-fn common_point(pair: &Pair<Solid>, inner: Option<usize>) -> Result<DVec3, QueryError> {
+fn common_point(pair: &PreparedPair, inner: Option<usize>) -> Result<DVec3, QueryError> {
     let found = pair.surface_distance()?;
     Ok(if inner == Some(1) { found.on_fixed } else { found.on_moving })
 }

@@ -49,7 +49,7 @@ pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
 pub use pair::SolidPairSearch;
 pub use pair::{OverlapDepth, SolidPair};
 pub use penetration::{
-    CommonPart, InnerPair, Relation, SignedDistance, SignedDistanceError, SolidDepth,
+    CommonPart, InnerPair, PreparedPair, Relation, SignedDistance, SignedDistanceError, SolidDepth,
     SolidPenetration, SurfaceDistance, VolumeOptions,
 };
 pub use solve::{Overlap, SolidContact, SolidGap, SolidNear, SolidSteps, Workspace};

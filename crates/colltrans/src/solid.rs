@@ -11,11 +11,11 @@ pub use colltrans_solid::proof::{
 };
 #[doc(inline)]
 pub use colltrans_solid::{
-    AsSolid, CommonPart, InnerPair, NoGrazing, Overlap, OverlapDepth, Relation, Shell, ShellKind,
-    ShrinkReport, SignedDistance, SignedDistanceError, SolidCast, SolidContact, SolidDepth,
-    SolidError, SolidFree, SolidGap, SolidIntersection, SolidNear, SolidOptions, SolidOverlap,
-    SolidPair, SolidPenetration, SolidReport, SolidSteps, StartOverlap, SurfaceDistance,
-    VolumeOptions, Workspace,
+    AsSolid, CommonPart, InnerPair, NoGrazing, Overlap, OverlapDepth, PreparedPair, Relation,
+    Shell, ShellKind, ShrinkReport, SignedDistance, SignedDistanceError, SolidCast, SolidContact,
+    SolidDepth, SolidError, SolidFree, SolidGap, SolidIntersection, SolidNear, SolidOptions,
+    SolidOverlap, SolidPair, SolidPenetration, SolidReport, SolidSteps, StartOverlap,
+    SurfaceDistance, VolumeOptions, Workspace,
 };
 #[doc(hidden)]
 pub use colltrans_solid::{SolidPairSearch, SolidScene};

@@ -4,20 +4,22 @@
 //!   or outside the other body as a whole.
 //! - One body contains the other if all shells of the inner one lie inside the outer one, and no shell that bounds
 //!   material of the outer one, such as the wall of a cavity, lies inside the inner one.
-//! - The volume, the box and the point are those of [`cells`](super::cells). If a contained body is convex, they are
-//!   its own, so that thin bodies need no small cells.
+//! - The volume is a sum over pairs of facets ([`prisms`](super::prisms)) or, if pieces of a body overlap, that of
+//!   [`cells`](super::cells). The box and the point are those of cells. If a contained body is convex, all of them are
+//!   its own.
 
 use glam::DVec3;
 
-use super::cells::{CommonCells, common_cells};
+use super::cells::{CommonCells, common_box, common_cells};
 use super::placed_solids;
+use super::prepared::PreparedPair;
+use super::prisms::common_volume;
 use crate::body::{Solid, check_is_not_rounded};
-use crate::pair::pair_scene;
 use crate::solve::hulls::ConvexBody;
 use crate::solve::inside::{bounding_shells_inside, shells_inside};
 use crate::solve::nearest::search::facet_corners;
 use crate::solve::nearest::triangle::Corners;
-use crate::solve::overlap::{Overlap, find_contact, find_overlap};
+use crate::solve::overlap::{Overlap, find_contact};
 use crate::solve::scene::PairFrame;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::body::Aabb;
@@ -26,6 +28,12 @@ use colltrans_convex::setting::error::QueryError;
 
 /// Number of halvings of the distance of a point below a facet.
 const MOST_HALVINGS: i32 = 50;
+/// Maximum number of pairs of facets in a sum, for each cell of the options.
+const PAIRS_PER_CELL: u64 = 256;
+/// Accuracy of cells that only bound the box and find a point.
+const COARSE: f64 = 0.25;
+/// Maximum number of these cells.
+const COARSE_CELLS: u32 = 256;
 
 /// How two solids lie to each other.
 ///
@@ -119,12 +127,13 @@ pub struct CommonPart {
     pub cells: u32,
 }
 
-/// Decides how the bodies of a scene lie to each other.
-fn relation(scene: &PairFrame) -> Relation {
-    let steps = &mut SolidSteps::default();
-    let place = match find_overlap(scene, steps) {
+/// Decides how two bodies lie to each other.
+fn relation(prepared: &PreparedPair) -> Relation {
+    let scene = &prepared.scene;
+    let place = match prepared.overlap() {
         None => {
-            return find_contact(scene, steps).map_or(Relation::Disjoint, Relation::Touching);
+            return find_contact(scene, &mut SolidSteps::default())
+                .map_or(Relation::Disjoint, Relation::Touching);
         }
         Some(place @ Overlap::Facets(..)) => return Relation::Crossing(place),
         Some(place) => place,
@@ -153,15 +162,15 @@ fn is_inside_both(pair: &Pair<'_, Solid>, at: DVec3) -> bool {
 
 /// Computes the common part of two bodies.
 pub(super) fn common_part(
-    pair: &Pair<'_, Solid>,
+    prepared: &PreparedPair,
     options: VolumeOptions,
 ) -> Result<CommonPart, QueryError> {
+    let PreparedPair { pair, scene, .. } = prepared;
     for body in [pair.moving(), pair.fixed()] {
         check_is_not_rounded(body.radius())?;
     }
     let accuracy = options.accuracy;
-    let scene = pair_scene(pair)?;
-    let relation = relation(&scene);
+    let relation = relation(prepared);
     if matches!(relation, Relation::Disjoint | Relation::Touching(_)) {
         let (volume, is_accurate) = ([0.0; 2], true);
         let nothing =
@@ -169,11 +178,11 @@ pub(super) fn common_part(
         return Ok(nothing);
     }
     let own = match relation {
-        Relation::MovingContained => convex_part(pair, &scene, true),
-        Relation::FixedContained => convex_part(pair, &scene, false),
+        Relation::MovingContained => convex_part(pair, scene, true),
+        Relation::FixedContained => convex_part(pair, scene, false),
         _ => None,
     };
-    let found = own.unwrap_or_else(|| common_cells(&scene, accuracy, options.max_cells));
+    let found = own.unwrap_or_else(|| part_by_facets(scene, options));
     let [lower, upper] = found.volume;
     let origin = pair.bodies.translations[0];
     let point = found.point.map(|at| at + origin).filter(|at| is_inside_both(pair, *at));
@@ -185,6 +194,26 @@ pub(super) fn common_part(
     let is_accurate = upper - lower <= accuracy * lower;
     let (volume, cells) = (found.volume, found.cells);
     Ok(CommonPart { relation, volume, is_accurate, bounds, point, cells })
+}
+
+/// Computes the common part of two overlapping bodies from pairs of facets and from cells. These are coarse if the pairs
+/// of facets have the volume.
+fn part_by_facets(scene: &PairFrame, options: VolumeOptions) -> CommonCells {
+    let VolumeOptions { accuracy, max_cells } = options;
+    let room = common_box(scene);
+    let has_room = room.low.cmplt(room.high).all();
+    let max_pairs = PAIRS_PER_CELL * u64::from(max_cells);
+    let sum = if has_room { common_volume(scene, &room, max_pairs) } else { None };
+    let Some(sum) = sum else { return common_cells(scene, accuracy, max_cells) };
+    let [lower, upper] = sum.bounds;
+    let mut found = if upper - lower <= accuracy * lower {
+        common_cells(scene, accuracy.max(COARSE), max_cells.min(COARSE_CELLS))
+    } else {
+        common_cells(scene, accuracy, max_cells)
+    };
+    found.volume = [found.volume[0].max(lower), found.volume[1].min(upper)];
+    found.point = found.point.or(sum.point);
+    found
 }
 
 /// Returns the common part of two bodies one of which is contained in the other: the inner body. `None` if it is not

@@ -17,6 +17,7 @@ use glam::DVec3;
 use super::cells::{common_box, near_facets};
 use super::cover::{BoxPair, cover_bound};
 use super::inner::{InnerPair, find_inner_pair};
+use super::prepared::PreparedPair;
 use super::surface::{core_distance, core_distances};
 use super::{ROUNDING, placed_solids};
 use crate::body::Solid;
@@ -97,32 +98,38 @@ impl SolidDepth {
     }
 }
 
-/// Computes bounds of the depth of two bodies.
-pub(super) fn depth(pair: &Pair<'_, Solid>) -> Result<SolidDepth, QueryError> {
-    Ok(depth_with_boxes(pair)?.0)
-}
-
 /// Computes bounds of the depth of two bodies, and the boxes inside both if it takes several to prove the lower bound.
 pub(super) fn depth_with_boxes(
     pair: &Pair<'_, Solid>,
 ) -> Result<(SolidDepth, Vec<BoxPair>), QueryError> {
+    prepared_depth(&PreparedPair::new(pair)?)
+}
+
+/// Computes [`depth_with_boxes`] of a prepared pair.
+pub(super) fn prepared_depth(
+    prepared: &PreparedPair,
+) -> Result<(SolidDepth, Vec<BoxPair>), QueryError> {
+    let PreparedPair { pair, scene, .. } = prepared;
+    let is_round = pair.moving().radius() + pair.fixed().radius() > 0.0;
     let has_interior = |body: &Solid| body.has_interior() || body.radius() > 0.0;
-    if !has_interior(pair.moving()) || !has_interior(pair.fixed()) || are_separated(pair)? {
+    let overlaps = has_interior(pair.moving())
+        && has_interior(pair.fixed())
+        && if is_round { !are_separated(pair)? } else { prepared.overlap().is_some() };
+    if !overlaps {
         return Ok((SolidDepth::ZERO, Vec::new()));
     }
-    let scene = pair_scene(pair)?;
     let hulls = bounds_of_hulls(pair);
-    let mut found = Shortest::new(pair, &scene);
-    found.try_box_exits(&scene);
+    let mut found = Shortest::new(pair, scene);
+    found.try_box_exits(scene);
     if let Some((_, translation)) = hulls {
         let outwards = translation.normalize_or_zero();
         found.accept_near(translation, outwards);
     }
     let is_final = hulls.is_some_and(|(lower, _)| found.length <= lower * (1.0 + 1e-9));
     if !is_final {
-        found.search(&scene);
+        found.search(scene);
     }
-    let inner = if hulls.is_some() { None } else { find_inner_pair(pair, &scene, found.length) };
+    let inner = if hulls.is_some() { None } else { find_inner_pair(pair, scene, found.length) };
     let mut boxes = Vec::new();
     let lower = match (hulls, &inner) {
         (Some((lower, _)), _) => lower,

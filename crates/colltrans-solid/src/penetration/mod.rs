@@ -1,8 +1,9 @@
 //! The common part of two solids, their depth, and distances of surfaces, also of bodies inside each other.
 //!
 //! - `surface`: the distance of two surfaces, also if one lies inside the other body, and signed distances of points.
-//! - `common`: how two bodies lie to each other, and their common part, with its volume by `cells`.
+//! - `common`: how two bodies lie to each other, and their common part, with its volume by `prisms` or `cells`.
 //! - `depth`: the length of the shortest translation that separates two overlapping bodies, from below by `inner` and `cover`.
+//! - `prepared`: one pair for several of these queries.
 //! - `certificate`: proofs of both bounds of the depth, and their verification.
 
 mod cells;
@@ -11,12 +12,15 @@ mod common;
 mod cover;
 mod depth;
 mod inner;
+mod prepared;
+mod prisms;
 mod surface;
 
 pub use certificate::{DepthCertificate, InnerCore};
 pub use common::{CommonPart, Relation, VolumeOptions};
 pub use depth::SolidDepth;
 pub use inner::InnerPair;
+pub use prepared::PreparedPair;
 pub use surface::{SignedDistance, SignedDistanceError, SurfaceDistance};
 
 use crate::body::Solid;
@@ -145,15 +149,15 @@ pub trait SolidPenetration {
 
 impl SolidPenetration for Pair<'_, Solid> {
     fn surface_distance(&self) -> Result<SurfaceDistance, QueryError> {
-        surface::surface_distance(self)
+        PreparedPair::new(self)?.surface_distance()
     }
 
     fn common_part(&self, options: VolumeOptions) -> Result<CommonPart, QueryError> {
-        common::common_part(self, options)
+        PreparedPair::new(self)?.common_part(options)
     }
 
     fn depth(&self) -> Result<SolidDepth, QueryError> {
-        depth::depth(self)
+        PreparedPair::new(self)?.depth()
     }
 
     fn certified_depth(&self) -> Result<DepthCertificate, QueryError> {

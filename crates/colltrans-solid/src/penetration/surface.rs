@@ -15,6 +15,7 @@ use crate::pair::{pair_scene, search_nearest};
 use crate::solve::nearest::search::SearchEnd;
 use crate::solve::nearest::{NearestPoints, find_common_point, shared_points};
 use crate::solve::overlap::Overlap;
+use crate::solve::scene::PairFrame;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::PoseError;
 use colltrans_convex::body::{ConvexPolyhedron, Placed, Pose};
@@ -151,30 +152,37 @@ fn signed_distance(
     Ok(SignedDistance { lower, upper, nearest: on_fixed, triangle: triangles[1], is_inside, steps })
 }
 
-/// Computes the distance of the surfaces of two bodies.
-pub(super) fn surface_distance(pair: &Pair<'_, Solid>) -> Result<SurfaceDistance, QueryError> {
+/// Computes the distance of the surfaces of two bodies in their frame.
+pub(super) fn surface_distance(
+    pair: &Pair<'_, Solid>,
+    scene: &PairFrame,
+) -> Result<SurfaceDistance, QueryError> {
     for body in [pair.moving(), pair.fixed()] {
         check_is_not_rounded(body.radius())?;
     }
-    core_distance(pair)
+    Ok(core_distance_in(pair, scene))
 }
 
 /// Computes the distance of the surfaces of two bodies without their radii.
 pub(super) fn core_distance(pair: &Pair<'_, Solid>) -> Result<SurfaceDistance, QueryError> {
-    let scene = pair_scene(pair)?;
-    let found = search_nearest(pair, &scene, SearchEnd::LEAST, false);
+    Ok(core_distance_in(pair, &pair_scene(pair)?))
+}
+
+/// Computes the distance of the surfaces of two bodies without their radii, in their frame.
+fn core_distance_in(pair: &Pair<'_, Solid>, scene: &PairFrame) -> SurfaceDistance {
+    let found = search_nearest(pair, scene, SearchEnd::LEAST, false);
     let mut steps = found.steps;
     let place =
-        if found.are_separated { None } else { find_common_point(&scene, found.lower, &mut steps) };
-    let spot = found.spot.unwrap_or_else(|| NearestPoints::from_triangles(&scene, [0, 0]));
+        if found.are_separated { None } else { find_common_point(scene, found.lower, &mut steps) };
+    let spot = found.spot.unwrap_or_else(|| NearestPoints::from_triangles(scene, [0, 0]));
     let (triangles, points, bounds) = if let Some(Overlap::Facets(f, g)) = place {
-        ([f, g], shared_points(&scene, Overlap::Facets(f, g)), [0.0; 2])
+        ([f, g], shared_points(scene, Overlap::Facets(f, g)), [0.0; 2])
     } else {
-        let upper = spot.solid_near(&scene).distance();
-        (spot.triangles, spot.witness_points(&scene), [found.lower.max(0.0), upper])
+        let upper = spot.solid_near(scene).distance();
+        (spot.triangles, spot.witness_points(scene), [found.lower.max(0.0), upper])
     };
     let origin = pair.bodies.translations[0];
     let [on_moving, on_fixed] = points.map(|point| point + origin);
     let [lower, upper] = bounds;
-    Ok(SurfaceDistance { lower, upper, on_moving, on_fixed, triangles, place, steps })
+    SurfaceDistance { lower, upper, on_moving, on_fixed, triangles, place, steps }
 }

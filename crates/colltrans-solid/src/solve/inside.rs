@@ -143,13 +143,19 @@ pub(crate) fn bounding_shells_inside(scene: &PairFrame, moving: bool) -> impl It
     bounding.into_iter()
 }
 
-/// Returns the triangles of the shells whose boxes meet the box of another shell, by a sweep along one axis.
+/// Returns the triangles of the shells whose boxes meet the box of another shell, by a sweep along the axis along which
+/// the boxes are shortest, relative to the box of all.
 fn spans_that_meet(spans: &[&ShellBounds]) -> HashSet<u32> {
+    let whole = spans.iter().fold(Aabb::EMPTY, |all, span| all.union(&span.bounds));
+    let lengths = spans.iter().map(|span| span.bounds.side_lengths()).sum::<DVec3>();
+    let sides = whole.side_lengths();
+    let shares = DVec3::select(sides.cmpgt(DVec3::ZERO), lengths / sides, DVec3::INFINITY);
+    let axis = shares.min_position();
     let mut sorted = spans.to_vec();
-    sorted.sort_by(|a, b| a.bounds.low.x.total_cmp(&b.bounds.low.x));
+    sorted.sort_by(|a, b| a.bounds.low[axis].total_cmp(&b.bounds.low[axis]));
     let (mut meets, mut active) = (HashSet::new(), Vec::<&ShellBounds>::new());
     for span in sorted {
-        active.retain(|other| other.bounds.high.x >= span.bounds.low.x);
+        active.retain(|other| other.bounds.high[axis] >= span.bounds.low[axis]);
         for other in &active {
             if other.bounds.intersects(&span.bounds) {
                 meets.extend([span.triangle, other.triangle]);

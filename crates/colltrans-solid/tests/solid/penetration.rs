@@ -736,3 +736,95 @@ fn boxes_inside_thin_bodies_far_away_are_not_reversed() {
     }
     assert!(0.0 <= found.lower && found.lower <= 15.0 && found.upper >= 15.0 - 1e-9, "{found:?}");
 }
+
+/// A prism around the z axis whose radius at corner `k` and angle are given, from height 0 to `height`.
+fn star(radii: &[f64], height: f64) -> Solid {
+    let count = radii.len();
+    let corner = |k: usize, z: f64| {
+        let angle = std::f64::consts::TAU * k as f64 / count as f64;
+        DVec3::new(radii[k] * angle.cos(), radii[k] * angle.sin(), z)
+    };
+    let vertices: Vec<DVec3> =
+        [0.0, height].iter().flat_map(|&z| (0..count).map(move |k| corner(k, z))).collect();
+    let n = count as u32;
+    let mut facets: Vec<Vec<u32>> = vec![(0..n).rev().collect(), (n..2 * n).collect()];
+    facets.extend((0..n).map(|k| vec![k, (k + 1) % n, n + (k + 1) % n, n + k]));
+    Solid::from_mesh(&vertices, &facets).expect("a prism")
+}
+
+/// Returns the area of the intersection of two rings of triangles around the origin, at equal angles.
+fn common_area(first: &[f64], second: &[f64]) -> f64 {
+    let count = first.len();
+    let step = std::f64::consts::TAU / count as f64;
+    // Along a ray between two corners the radius of the chord is `sin(step) / (sin(step - t) / r + sin(t) / s)`.
+    let inverse = |radii: &[f64], k: usize, t: f64| {
+        ((step - t).sin() / radii[k] + t.sin() / radii[(k + 1) % count]) / step.sin()
+    };
+    let parts = 20_000;
+    let area = |k: usize| -> f64 {
+        let at = |j: usize| {
+            let t = step * (j as f64 + 0.5) / f64::from(parts);
+            0.5 * inverse(first, k, t).max(inverse(second, k, t)).powi(-2)
+        };
+        (0..parts as usize).map(at).sum::<f64>() * step / f64::from(parts)
+    };
+    (0..count).map(area).sum()
+}
+
+/// The common part of two stars at one place is a prism. Its top and bottom are flat contacts of both bodies.
+#[test]
+fn volume_of_stars_with_common_planes_is_that_of_their_section() {
+    for seed in 0..cases(40) {
+        let mut random = Random::new(seed);
+        let count = 5 + random.index(30);
+        let radii = [0, 1].map(|_| (0..count).map(|_| random.range(0.5, 1.0)).collect::<Vec<_>>());
+        let height = random.pick(&[1.0, 1e-3, 1e-7]);
+        let [a, b] = [star(&radii[0], height), star(&radii[1], height)];
+        let pose = Pose::new(random.rotation(), random.vector()).expect("a pose");
+        let found = common(&Pair::new(a.at(pose), b.at(pose)).expect("a pair"));
+        let exact = height * common_area(&radii[0], &radii[1]);
+        let [lower, upper] = found.volume;
+        assert!(
+            lower <= exact * (1.0 + 1e-6) && exact * (1.0 - 1e-6) <= upper,
+            "{seed}: {exact} {found:?}"
+        );
+        assert!(found.is_accurate && upper - lower <= 1e-4 * lower, "{seed}: {exact} {found:?}");
+    }
+}
+
+/// Stars whose corners are nearly on a circle have slivers as facets of the top and the bottom.
+#[test]
+fn volumes_of_slivers_agree_with_those_of_both_parts() {
+    for seed in 0..cases(20) {
+        let mut random = Random::new(seed);
+        let radii: Vec<f64> = (0..60).map(|_| 1.0 + random.range(0.0, 1e-9)).collect();
+        let whole = star(&radii, 1.0);
+        let pose = Pose::new(random.rotation(), random.vector() * 1e3).expect("a pose");
+        let cut = random.range(0.1, 0.9);
+        let parts = [(-5.0, cut), (cut, 5.0)].map(|(low, high)| {
+            let half = cuboid([-5.0, -5.0, low], [5.0, 5.0, high]);
+            common(&Pair::new(whole.at(pose), half.at(pose)).expect("a pair")).volume
+        });
+        let [least, most] = whole.volume_bounds().expect("closed");
+        let [lower, upper] = [0, 1].map(|k| parts[0][k] + parts[1][k]);
+        assert!(lower <= most && least <= upper && upper - lower < 1e-5, "{seed}: {parts:?}");
+    }
+}
+
+/// Overlapping pieces have the winding number 2, and an open shell has none.
+#[test]
+fn volumes_of_unions_and_open_bodies_count_each_point_once() {
+    let low = block([0.0; 3], [2.0, 2.0, 2.0]);
+    let pieces = solid(&low.joined(&block([1.0, 0.5, 0.5], [3.0, 1.5, 1.5])));
+    let room = cuboid([0.25, -1.0, -1.0], [2.5, 3.0, 3.0]);
+    let found = common(&pair(&pieces, &room));
+    assert!(found.volume[0] <= 7.5 && 7.5 <= found.volume[1] && found.is_accurate, "{found:?}");
+    let sheet = [[0.5, 0.5], [4.0, 0.5], [4.0, 4.0]].map(|[x, y]| DVec3::new(x, y, 1.0));
+    let vertices: Vec<DVec3> = low.vertices.iter().copied().chain(sheet).collect();
+    let first = low.vertices.len() as u32;
+    let mut facets = low.faces.clone();
+    facets.push((first..first + 3).collect());
+    let open = Solid::from_open_mesh(&vertices, &facets).expect("an open body");
+    let found = common(&pair(&open, &room));
+    assert!(found.volume[0] <= 7.0 && 7.0 <= found.volume[1] && found.is_accurate, "{found:?}");
+}

@@ -57,6 +57,10 @@ const MAX_LAYERS: usize = 64;
 const WORK_OF_SIDES: u64 = 2;
 /// Maximum number of times that all facets near the common part are clipped, in addition.
 const ROUNDS_OF_FACETS: u64 = 8;
+/// Share of a side of the box of the common part to which cells bound it.
+const BOX_ACCURACY: f64 = 0.02;
+/// Maximum number of corners of a triangle after six cuts, each of which may cross every second edge after rounding.
+const MAX_CORNERS: usize = 32;
 /// Share of the longest side of a cell that a cut in the plane of a facet leaves on both sides.
 const LEAST_PART: f64 = 1.0 / 32.0;
 
@@ -156,28 +160,42 @@ pub(super) fn clipped(corners: Corners, within: &Aabb) -> Vec<DVec3> {
     if !around.intersects(within) {
         return Vec::new();
     }
-    let mut polygon = corners.to_vec();
     if within.contains_box(&around) {
-        return polygon;
+        return corners.to_vec();
     }
+    let [mut first, mut second] = [[DVec3::ZERO; MAX_CORNERS]; 2];
+    let (mut polygon, mut kept) = (&mut first, &mut second);
+    polygon[..3].copy_from_slice(&corners);
+    let mut count = 3;
     for (k, sign) in [(0, 1.0), (1, 1.0), (2, 1.0), (0, -1.0), (1, -1.0), (2, -1.0)] {
         let limit = if sign > 0.0 { within.high[k] } else { within.low[k] };
+        let reaches_beyond =
+            if sign > 0.0 { around.high[k] > limit } else { around.low[k] < limit };
+        if !reaches_beyond {
+            continue;
+        }
         let is_within = |p: DVec3| (limit - p[k]) * sign >= 0.0;
-        let mut kept = Vec::with_capacity(polygon.len() + 1);
-        for (i, &p) in polygon.iter().enumerate() {
-            let q = polygon[(i + 1) % polygon.len()];
+        let mut next = 0;
+        for i in 0..count {
+            let (p, q) = (polygon[i], polygon[if i + 1 == count { 0 } else { i + 1 }]);
             if is_within(p) {
-                kept.push(p);
+                kept[next] = p;
+                next += 1;
             }
             if is_within(p) != is_within(q) {
                 let mut between = p + (q - p) * ((limit - p[k]) / (q[k] - p[k]));
                 between[k] = limit;
-                kept.push(between);
+                kept[next] = between;
+                next += 1;
             }
         }
-        polygon = kept;
+        std::mem::swap(&mut polygon, &mut kept);
+        count = next;
+        if count == 0 {
+            break;
+        }
     }
-    polygon
+    polygon[..count].to_vec()
 }
 
 /// Checks whether a box contains a point.
@@ -312,7 +330,38 @@ struct Search<'s, 'a> {
     work: u64,
 }
 
+impl CommonCells {
+    /// The common part of bodies whose boxes have none.
+    const NOTHING: Self = Self { volume: [0.0; 2], bounds: Aabb::EMPTY, point: None, cells: 1 };
+}
+
 impl Search<'_, '_> {
+    /// Returns the number of facets that a search with at most `max_cells` cells may clip.
+    fn max_work(&self, max_cells: u32) -> u64 {
+        FACETS_PER_CELL * u64::from(max_cells) + ROUNDS_OF_FACETS * self.facets.len() as u64
+    }
+
+    /// Returns both parts of a cell; `None` if a cut improves nothing.
+    fn parts(&mut self, cell: &Cell) -> Option<[Cell; 2]> {
+        let (axis, place) = cell.cut?;
+        let mut halves = [cell.bounds; 2];
+        (halves[0].high[axis], halves[1].low[axis]) = (place, place);
+        Some(halves.map(|half| self.cell(half, &cell.facets, cell.sides)))
+    }
+
+    /// Returns what all cells prove.
+    fn result(&self, cells: &[Cell]) -> CommonCells {
+        let [lower, slack] = sums(cells);
+        let rounding = f64::EPSILON * (64.0 + cells.len() as f64);
+        let bounds = cells.iter().fold(Aabb::EMPTY, |all, cell| all.union(&cell.common));
+        CommonCells {
+            volume: [lower * (1.0 - rounding), (lower + slack) * (1.0 + rounding)],
+            bounds: bounds.expanded(2.0 * DELTA * self.scene.noise),
+            point: self.best.map(|(_, point)| point),
+            cells: cells.len() as u32,
+        }
+    }
+
     /// Returns whether a point is inside the moving (0) or the fixed body (1), exactly; `None` if it is on the surface.
     fn is_inside(&self, body: usize, point: DVec3) -> Option<bool> {
         let side = self.scene.side(body == 0);
@@ -468,12 +517,11 @@ fn sums<'c>(cells: impl IntoIterator<Item = &'c Cell>) -> [f64; 2] {
     cells.into_iter().fold([0.0; 2], |[a, b], cell| [a + cell.lower, b + cell.slack])
 }
 
-/// Bounds the volume of the common part of two bodies to a relative `accuracy`, or as well as `max_cells` cells allow.
-pub(super) fn common_cells(scene: &PairFrame, accuracy: f64, max_cells: u32) -> CommonCells {
+/// Returns the search in the box of both bodies, and its first cell; `None` if the box is empty.
+fn first_cell<'s, 'a>(scene: &'s PairFrame<'a>) -> Option<(Search<'s, 'a>, Cell)> {
     let room = common_box(scene);
-    let mut found = CommonCells { volume: [0.0; 2], bounds: Aabb::EMPTY, point: None, cells: 1 };
     if !room.low.cmplt(room.high).all() {
-        return found;
+        return None;
     }
     let facets: Vec<(Corners, bool)> = [true, false]
         .into_iter()
@@ -483,41 +531,75 @@ pub(super) fn common_cells(scene: &PairFrame, accuracy: f64, max_cells: u32) -> 
         })
         .collect();
     let all: Vec<u32> = (0..facets.len() as u32).collect();
-    let max_work = FACETS_PER_CELL * u64::from(max_cells) + ROUNDS_OF_FACETS * facets.len() as u64;
     let mut search = Search { scene, facets, best: None, work: 0 };
     let first = search.cell(room, &all, [None; 2]);
+    Some((search, first))
+}
+
+/// Bounds the volume of the common part of two bodies to a relative `accuracy`, or as well as `max_cells` cells allow.
+pub(super) fn common_cells(scene: &PairFrame, accuracy: f64, max_cells: u32) -> CommonCells {
+    let Some((mut search, first)) = first_cell(scene) else { return CommonCells::NOTHING };
+    let max_work = search.max_work(max_cells);
     // Running sums, computed anew when the number of cells has doubled. Their rounding errors affect only the end of
     // the search.
     let (mut lower, mut slack) = (first.lower, first.slack);
     let (mut open, mut done) = (BinaryHeap::from([first]), Vec::new());
-    while found.cells < max_cells && search.work < max_work {
-        if found.cells.is_power_of_two() {
+    let mut count = 1_u32;
+    while count < max_cells && search.work < max_work {
+        if count.is_power_of_two() {
             [lower, slack] = sums(open.iter().chain(&done));
         }
         if slack <= 0.999 * accuracy * lower {
             break;
         }
         let Some(cell) = open.pop() else { break };
-        let Some((axis, place)) = cell.cut else {
+        let Some(parts) = search.parts(&cell) else {
             done.push(cell);
             continue;
         };
-        let mut halves = [cell.bounds; 2];
-        (halves[0].high[axis], halves[1].low[axis]) = (place, place);
-        let parts = halves.map(|half| search.cell(half, &cell.facets, cell.sides));
         lower += parts[0].lower + parts[1].lower - cell.lower;
         slack += parts[0].slack + parts[1].slack - cell.slack;
         open.extend(parts);
-        found.cells += 1;
+        count += 1;
     }
     done.extend(open);
-    let [lower, slack] = sums(&done);
-    let rounding = f64::EPSILON * (64.0 + done.len() as f64);
-    found.volume = [lower * (1.0 - rounding), (lower + slack) * (1.0 + rounding)];
-    found.bounds = done.iter().fold(Aabb::EMPTY, |all, cell| all.union(&cell.common));
-    found.bounds = found.bounds.expanded(2.0 * DELTA * scene.noise);
-    found.point = search.best.map(|(_, point)| point);
-    found
+    search.result(&done)
+}
+
+/// Bounds the box of the common part of two bodies to a relative [`BOX_ACCURACY`], or as well as `max_cells` cells allow.
+///
+/// For each side of the box in turn, the cell that extends to this side is split.
+pub(super) fn box_cells(scene: &PairFrame, max_cells: u32) -> CommonCells {
+    let Some((mut search, first)) = first_cell(scene) else { return CommonCells::NOTHING };
+    let max_work = search.max_work(max_cells);
+    let (mut cells, mut final_sides) = (vec![first], 0);
+    for side in (0..6).cycle() {
+        if final_sides == 6 || cells.len() >= max_cells as usize || search.work >= max_work {
+            break;
+        }
+        let (k, is_upper) = (side % 3, side < 3);
+        let whole = cells.iter().fold(Aabb::EMPTY, |all, cell| all.union(&cell.common));
+        let beyond = |cell: &Cell| {
+            let Aabb { low, high } = cell.common;
+            if is_upper { high[k] } else { -low[k] }
+        };
+        let farthest =
+            (0..cells.len()).max_by(|&i, &j| beyond(&cells[i]).total_cmp(&beyond(&cells[j])));
+        let Some(at) = farthest else { break };
+        // A cell without a proven part may contain nothing.
+        let is_short = cells[at].lower > 0.0
+            && cells[at].common.side_lengths()[k] <= BOX_ACCURACY * whole.side_lengths()[k];
+        let parts = if is_short { None } else { search.parts(&cells[at]) };
+        match parts {
+            Some(parts) => {
+                cells.swap_remove(at);
+                cells.extend(parts);
+                final_sides = 0;
+            }
+            None => final_sides += 1,
+        }
+    }
+    search.result(&cells)
 }
 
 #[cfg(test)]

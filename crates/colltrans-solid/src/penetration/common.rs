@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use super::cells::{CommonCells, common_box, common_cells};
+use super::cells::{CommonCells, box_cells, common_box, common_cells};
 use super::placed_solids;
 use super::prepared::PreparedPair;
 use super::prisms::common_volume;
@@ -30,10 +30,8 @@ use colltrans_convex::setting::error::QueryError;
 const MOST_HALVINGS: i32 = 50;
 /// Maximum number of pairs of facets in a sum, for each cell of the options.
 const PAIRS_PER_CELL: u64 = 256;
-/// Accuracy of cells that only bound the box and find a point.
-const COARSE: f64 = 0.25;
-/// Maximum number of these cells.
-const COARSE_CELLS: u32 = 256;
+/// Maximum number of cells that only bound the box.
+const BOX_CELLS: u32 = 512;
 
 /// How two solids lie to each other.
 ///
@@ -79,7 +77,8 @@ pub struct VolumeOptions {
     /// more.
     pub accuracy: f64,
     /// Maximum number of cells. The default is 100,000. The search also ends when it has clipped 64 facets for each of
-    /// them, and all facets near the common part eight times more.
+    /// them, and all facets near the common part eight times more. The sum over pairs of facets has at most 256 pairs for
+    /// each of them.
     pub max_cells: u32,
 }
 
@@ -196,8 +195,7 @@ pub(super) fn common_part(
     Ok(CommonPart { relation, volume, is_accurate, bounds, point, cells })
 }
 
-/// Computes the common part of two overlapping bodies from pairs of facets and from cells. These are coarse if the pairs
-/// of facets have the volume.
+/// Computes the common part of two overlapping bodies. If pairs of facets have the volume, cells only bound the box.
 fn part_by_facets(scene: &PairFrame, options: VolumeOptions) -> CommonCells {
     let VolumeOptions { accuracy, max_cells } = options;
     let room = common_box(scene);
@@ -207,21 +205,25 @@ fn part_by_facets(scene: &PairFrame, options: VolumeOptions) -> CommonCells {
     let Some(sum) = sum else { return common_cells(scene, accuracy, max_cells) };
     let [lower, upper] = sum.bounds;
     let mut found = if upper - lower <= accuracy * lower {
-        common_cells(scene, accuracy.max(COARSE), max_cells.min(COARSE_CELLS))
+        box_cells(scene, max_cells.min(BOX_CELLS))
     } else {
         common_cells(scene, accuracy, max_cells)
     };
-    found.volume = [found.volume[0].max(lower), found.volume[1].min(upper)];
+    let both = [found.volume[0].max(lower), found.volume[1].min(upper)];
+    debug_assert!(both[0] <= both[1], "{:?} {:?}", found.volume, sum.bounds);
+    if both[0] <= both[1] {
+        found.volume = both;
+    }
     found.point = found.point.or(sum.point);
     found
 }
 
 /// Returns the common part of two bodies one of which is contained in the other: the inner body. `None` if it is not
-/// convex. A surface that hardly differs from the hull does not intersect itself, so that its volume is that of the
-/// space inside: it is star-shaped about the centre of a ball inside the hull.
+/// convex. A surface that is star-shaped about the centre of a ball inside the hull does not intersect itself, so that
+/// its volume is that of the space inside.
 fn convex_part(pair: &Pair<'_, Solid>, scene: &PairFrame, is_moving: bool) -> Option<CommonCells> {
     let inner = scene.side(is_moving);
-    ConvexBody::cached(inner.solid)?.dent_share()?;
+    ConvexBody::cached(inner.solid).filter(|convex| convex.is_star_shaped)?;
     let [lower, upper] = inner.solid.volume_bounds()?;
     // The determinant of a matrix `M` with a defect `|M^T M - I| <= d` lies within `1 - 2 d` and `1 + 2 d`.
     let stretch = 2.0 * inner.defect + 64.0 * f64::EPSILON;

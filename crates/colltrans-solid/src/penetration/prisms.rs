@@ -28,6 +28,8 @@ const DISPLACEMENT: f64 = 64.0;
 const PATH: f64 = 6.0;
 /// Area of a triangle without an accurate height, as a share of the square of its size.
 const THIN: f64 = 64.0 * f64::EPSILON;
+/// Maximum number of cells of the grid that contain a facet, on average.
+const MAX_CELLS_OF_FACET: u64 = 16;
 /// Number of pairs of boxes that are compared at the cost of one pair of facets.
 const BOXES_PER_PAIR: u64 = 16;
 
@@ -76,11 +78,12 @@ impl Polygon {
     }
 
     /// Returns the polygon with other corners.
-    fn mapped(mut self, map: impl Fn(DVec4) -> DVec4) -> Self {
-        for corner in &mut self.corners[..self.count] {
+    fn mapped(&self, map: impl Fn(DVec4) -> DVec4) -> Self {
+        let mut mapped = *self;
+        for corner in &mut mapped.corners[..self.count] {
             *corner = map(*corner);
         }
-        self
+        mapped
     }
 
     /// Returns the part with values up to `limit` and, if there is one, that with larger values.
@@ -182,8 +185,8 @@ struct Upper {
 }
 
 impl Upper {
-    /// Builds the part of a facet in the room; `None` if it is empty.
-    fn new(facet: &Facet, sides: DVec3) -> Option<Option<Self>> {
+    /// Builds the part of a facet in the room, which may be empty; `None` if it has too many corners.
+    fn new(facet: &Facet, sides: DVec3) -> Option<Self> {
         let mut part = Polygon { corners: [DVec4::ZERO; MAX_CORNERS], count: 0 };
         for corner in facet.corners {
             part.push(corner.extend(0.0))?;
@@ -193,7 +196,7 @@ impl Upper {
         let start = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let corners = part.corners().iter();
         let (low, high) = corners.fold(start, |(l, h), p| (l.min(p.xy()), h.max(p.xy())));
-        Some((part.count > 2).then_some(Self { part, low, high }))
+        Some(Self { part, low, high })
     }
 
     /// Returns the volume between this facet and a lower one, within the room, and a point of its base.
@@ -223,7 +226,7 @@ struct Grid<'f> {
     facets: &'f [Facet],
     counts: [usize; 2],
     cell: DVec2,
-    /// For each cell the end of its list in `items`.
+    /// For each cell the start of its list in `items`, and the end of the last one.
     starts: Vec<u32>,
     items: Vec<u32>,
 }
@@ -234,18 +237,24 @@ impl<'f> Grid<'f> {
         let number = facets.len().max(1) as f64;
         let mean = facets.iter().map(|f| clipped_sides(f, sides)).sum::<DVec2>() / number;
         let finest = (2.0 * number.sqrt()).ceil();
-        let counts = (sides / mean.max(sides / finest)).floor().max(DVec2::ONE);
-        let cell = sides / counts;
-        let counts = [counts.x as usize, counts.y as usize];
-        let mut grid = Self {
-            facets,
-            counts,
-            cell,
-            starts: vec![0; counts[0] * counts[1] + 1],
-            items: vec![],
+        let mut counts = (sides / mean.max(sides / finest)).floor().max(DVec2::ONE);
+        let mut grid = Self { facets, counts: [1; 2], cell: sides, starts: vec![], items: vec![] };
+        // Large facets among many small ones are in many cells. Coarser cells bound the memory.
+        let ranges = loop {
+            grid.counts = [counts.x as usize, counts.y as usize];
+            grid.cell = sides / counts;
+            let cells = |f: &Facet| grid.cells(f.bounds.low.xy(), f.bounds.high.xy());
+            let ranges: Vec<[[usize; 2]; 2]> = facets.iter().map(cells).collect();
+            let entries: u64 = ranges.iter().map(|range| number_of_cells(*range)).sum();
+            if entries <= MAX_CELLS_OF_FACET * facets.len() as u64 || counts == DVec2::ONE {
+                break ranges;
+            }
+            let halved =
+                if counts.x >= counts.y { DVec2::new(0.5, 1.0) } else { DVec2::new(1.0, 0.5) };
+            counts = (counts * halved).ceil();
         };
-        let cells = |f: &Facet| grid.cells(f.bounds.low.xy(), f.bounds.high.xy());
-        let ranges: Vec<[[usize; 2]; 2]> = facets.iter().map(cells).collect();
+        let counts = grid.counts;
+        grid.starts = vec![0; counts[0] * counts[1] + 1];
         let mut lists = vec![0_u32; grid.starts.len()];
         for range in &ranges {
             visit_cells(*range, |x, y| lists[y * counts[0] + x + 1] += 1);
@@ -279,6 +288,11 @@ impl<'f> Grid<'f> {
         let at = y * self.counts[0] + x;
         &self.items[self.starts[at] as usize..self.starts[at + 1] as usize]
     }
+}
+
+/// Returns the number of cells of a range.
+fn number_of_cells([from, to]: [[usize; 2]; 2]) -> u64 {
+    (to[0] - from[0] + 1) as u64 * (to[1] - from[1] + 1) as u64
 }
 
 /// Calls a function for each cell of a range.
@@ -334,8 +348,7 @@ impl Column {
                 below.push(facet);
             }
         }
-        let is_simple =
-            ConvexBody::cached(body.solid).is_some_and(|convex| convex.dent_share().is_some());
+        let is_simple = ConvexBody::cached(body.solid).is_some_and(|convex| convex.is_star_shaped);
         Self { above, below, count, moved, is_simple }
     }
 }
@@ -402,12 +415,15 @@ impl Sums {
         let grid = Grid::new(below, sides.xy());
         let (mut sum, mut magnitude, mut error, mut pairs) = (0.0, 0.0, 0.0, 0_u64);
         for facet in above {
-            let Some(upper) = Upper::new(facet, sides)? else { continue };
+            let upper = Upper::new(facet, sides)?;
+            if upper.part.count < 3 {
+                continue;
+            }
             let range = grid.cells(upper.low, upper.high);
             for y in range[0][1]..=range[1][1] {
                 for x in range[0][0]..=range[1][0] {
                     let list = grid.list(x, y);
-                    self.budget = self.budget.checked_sub(list.len() as u64)?;
+                    self.budget = self.budget.checked_sub(1 + list.len() as u64)?;
                     for &k in list {
                         let lower = &grid.facets[k as usize];
                         let low = upper.low.max(lower.bounds.low.xy());
@@ -447,7 +463,10 @@ impl Sums {
         let Self { sides, noise, .. } = *self;
         let (mut sum, mut magnitude, mut error) = (0.0, 0.0, 0.0);
         for facet in above {
-            let Some(upper) = Upper::new(facet, sides)? else { continue };
+            let upper = Upper::new(facet, sides)?;
+            if upper.part.count < 3 {
+                continue;
+            }
             error += 2.0 * DISPLACEMENT * (upper.high - upper.low + noise).element_sum() * sides.z;
             if !facet.is_thin {
                 let part = upper.part.volume_between(sides.z)?;
@@ -470,30 +489,41 @@ impl Sums {
             [self.product(&body.above, &body.below)?, self.integral(&body.above)?];
         Some((square.value - linear.value).max(0.0) + square.error + linear.error)
     }
+
+    /// Returns bounds of the volume of the common part, and a point of the base below its largest prism.
+    fn common(&mut self, upper: &Column, lower: &Column) -> Option<([f64; 2], DVec2)> {
+        let both = self.product(&upper.above, &lower.below)?;
+        let base = self.largest.1;
+        let others = self.excess(upper)? + self.excess(lower)?;
+        let error = both.error + others + upper.moved + lower.moved;
+        let error = error * (1.0 + 1e-9) + 4.0 * f64::EPSILON * both.value.abs();
+        let bounds = [(both.value - error).max(0.0), both.value + error];
+        (bounds[0] <= bounds[1] && bounds[1].is_finite()).then_some((bounds, base))
+    }
 }
 
-/// The volume of the common part of two bodies, in the setting frame.
+/// The volume of the common part of two bodies in a box, in the setting frame.
 pub(super) struct CommonVolume {
-    /// Lower and upper bound. They are far apart if a body covers a part of the room more than once.
+    /// Lower and upper bound. They are far apart if a body covers a part of the box more than once.
     pub(super) bounds: [f64; 2],
     /// Point that is inside both bodies, unless rounding errors displace it.
     pub(super) point: Option<DVec3>,
 }
 
-/// Computes the volume of the common part of two bodies, which lies in `room`; `None` if that takes more than
-/// `max_pairs` pairs of facets.
+/// Computes the volume of the common part of two bodies in a box; `None` if that takes more than `max_pairs` pairs of
+/// facets.
 pub(super) fn common_volume(
     scene: &PairFrame,
     room: &Aabb,
     max_pairs: u64,
 ) -> Option<CommonVolume> {
+    // The axis and the order of the bodies with the least expected number of pairs.
     let choices = (0..3).map(|axis| {
         let sides = upright(room.side_lengths(), axis);
         let [a, b] = [true, false].map(|moving| Column::new(scene, scene.side(moving), room, axis));
         let pairs = |f: &Column, g: &Column| expected_pairs(&f.above, &g.below, sides.xy());
         let own = |f: &Column| if f.is_simple { 0.0 } else { pairs(f, f) };
-        let is_turned = pairs(&b, &a) < pairs(&a, &b);
-        let columns = if is_turned { [b, a] } else { [a, b] };
+        let columns = if pairs(&b, &a) < pairs(&a, &b) { [b, a] } else { [a, b] };
         let work = pairs(&columns[0], &columns[1]) + own(&columns[0]) + own(&columns[1]);
         (work, axis, columns)
     });
@@ -504,13 +534,8 @@ pub(super) fn common_volume(
     let (sides, noise) = (upright(room.side_lengths(), axis), scene.noise);
     let largest = (0.0, 0.5 * sides.xy());
     let mut sums = Sums { sides, noise, budget: BOXES_PER_PAIR * max_pairs, largest };
-    let both = sums.product(&upper.above, &lower.below)?;
-    let base = sums.largest.1;
-    let others = sums.excess(&upper)? + sums.excess(&lower)?;
-    let error = both.error + others + upper.moved + lower.moved;
-    let error = error * (1.0 + 1e-9) + 4.0 * f64::EPSILON * both.value.abs();
-    let bounds = [(both.value - error).max(0.0), both.value + error];
+    let (bounds, base) = sums.common(&upper, &lower)?;
     let height = inner_height(&upper.above, &lower.below, base);
     let point = height.map(|height| room.low + lying(base.extend(height), axis));
-    (bounds[0] <= bounds[1] && bounds[1].is_finite()).then_some(CommonVolume { bounds, point })
+    Some(CommonVolume { bounds, point })
 }

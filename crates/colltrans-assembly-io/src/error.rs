@@ -1,6 +1,6 @@
 //! Errors of readers, with the file and the place.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use colltrans_assembly::AssemblyError;
 use thiserror::Error;
@@ -67,11 +67,7 @@ pub enum ReadError {
         holds: String,
     },
     /// The source refers to mesh files that do not exist.
-    #[error(
-        "{}: {} referenced meshes not found, the first is {}; give the package roots, or skip \
-         missing meshes",
-        path.display(), missing.len(), missing[0]
-    )]
+    #[error("{}: {}", path.display(), missing_text(path, missing))]
     MissingMeshes {
         /// The file that has the references.
         path: PathBuf,
@@ -96,4 +92,17 @@ impl ReadError {
     pub fn is_missing_file(&self) -> bool {
         matches!(self, Self::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound)
     }
+}
+
+/// Returns the text about missing meshes, with the advice. Only robots have packages.
+fn missing_text(path: &Path, missing: &[String]) -> String {
+    let count = missing.len();
+    let found = match missing {
+        [one] => format!("1 referenced mesh not found: {one}"),
+        _ => format!("{count} referenced meshes not found, the first is {}", missing[0]),
+    };
+    let extension = path.extension().unwrap_or_default();
+    let is_manifest = ["toml", "json"].iter().any(|known| extension.eq_ignore_ascii_case(known));
+    let advice = if is_manifest { "correct the paths" } else { "give the package roots" };
+    format!("{found}; {advice}, or skip missing meshes")
 }

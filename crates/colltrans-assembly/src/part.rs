@@ -255,23 +255,23 @@ impl Assembly {
         Ok(Self { parts, ..Self::default() })
     }
 
-    /// Returns the assembly with pairs (by name) whose contacts are ignored. A pair that is given twice keeps
-    /// the more permissive value.
+    /// Returns the assembly with pairs whose contacts are ignored: each pair of a part of the first group and one
+    /// of the second. A pair that is given twice keeps the more permissive value. Names are patterns of
+    /// [`parts_named`](Self::parts_named).
     ///
     /// # Errors
-    /// [`AssemblyError::UnknownPart`], and [`AssemblyError::SamePart`] if a part is paired with itself.
+    /// [`AssemblyError::UnknownPart`], and [`AssemblyError::SamePart`] if both groups consist of the same single part.
     pub fn with_ignored<S: AsRef<str>>(
         mut self,
         pairs: &[[S; 2]],
         ignored: Ignored,
     ) -> Result<Self, AssemblyError> {
         for [a, b] in pairs {
-            let (a, b) = (self.part_index(a.as_ref())?, self.part_index(b.as_ref())?);
-            if a == b {
-                return Err(AssemblyError::SamePart { name: self.parts[a].name.clone() });
+            let groups = self.pair_groups([&[a], &[b]])?;
+            for pair in pairs_between(&groups) {
+                let stored = self.ignored.entry(pair).or_insert(ignored);
+                *stored = ignored.max(*stored);
             }
-            let stored = self.ignored.entry([a.min(b), a.max(b)]).or_insert(ignored);
-            *stored = ignored.max(*stored);
         }
         Ok(self)
     }
@@ -290,30 +290,21 @@ impl Assembly {
     ///   other constraints
     pub fn with_pair<S: AsRef<str>>(
         mut self,
-        [first, second]: [&[S]; 2],
+        names: [&[S]; 2],
         fit: PairFit,
     ) -> Result<Self, AssemblyError> {
-        let (first, second) = (self.parts_named(first)?, self.parts_named(second)?);
-        if let ([a], [b]) = (&first[..], &second[..])
-            && a == b
-        {
-            return Err(AssemblyError::SamePart { name: self.parts[*a].name.clone() });
-        }
+        let groups = self.pair_groups(names)?;
         if let Some(value) = fit.tolerance.filter(|x| !(0.0..=MAX_MAGNITUDE).contains(x)) {
             return Err(AssemblyError::InvalidValue { what: "tolerance", value });
         }
-        let names = || [first[0], second[0]].map(|part| self.parts[part].name.clone());
+        let names = || groups.each_ref().map(|group| self.parts[group[0]].name.clone());
         if fit == PairFit::default() {
             return Err(AssemblyError::NoFit { names: names() });
         }
         if fit.role == Some(Role::Snap) && fit.tolerance.is_none() {
             return Err(AssemblyError::NoTolerance { names: names() });
         }
-        for [a, b] in first.iter().flat_map(|&a| second.iter().map(move |&b| [a, b])) {
-            if a == b {
-                continue;
-            }
-            let pair = [a.min(b), a.max(b)];
+        for pair in pairs_between(&groups) {
             self.pairs.insert(pair, fit);
             if fit.role == Some(Role::Glued) {
                 let unit = RigidUnit { name: None, parts: pair.to_vec(), is_subassembly: false };
@@ -322,6 +313,23 @@ impl Assembly {
             }
         }
         Ok(self)
+    }
+
+    /// Returns the indices of the parts of two groups, whose pairs get a property.
+    ///
+    /// # Errors
+    /// [`AssemblyError::UnknownPart`], and [`AssemblyError::SamePart`] if both groups consist of the same single part.
+    fn pair_groups<S: AsRef<str>>(
+        &self,
+        names: [&[S]; 2],
+    ) -> Result<[Vec<usize>; 2], AssemblyError> {
+        let groups = [self.parts_named(names[0])?, self.parts_named(names[1])?];
+        match (&groups[0][..], &groups[1][..]) {
+            ([a], [b]) if a == b => {
+                Err(AssemblyError::SamePart { name: self.parts[*a].name.clone() })
+            }
+            _ => Ok(groups),
+        }
     }
 
     /// Returns the assembly with fixed parts, which a plan never moves. Names are patterns of
@@ -551,6 +559,12 @@ impl Assembly {
     pub(crate) fn largest_side(&self) -> f64 {
         self.bounds().side_lengths().max_element()
     }
+}
+
+/// Iterates over the pairs of a part of the first group and another part of the second, the smaller index first.
+fn pairs_between([first, second]: &[Vec<usize>; 2]) -> impl Iterator<Item = [usize; 2]> {
+    let all = first.iter().flat_map(move |&a| second.iter().map(move |&b| [a.min(b), a.max(b)]));
+    all.filter(|[a, b]| a != b)
 }
 
 /// Returns the number of leading characters that two names share, ignoring ASCII case.

@@ -33,7 +33,11 @@ use colltrans_mesh::body::BodyError;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::{AssemblyArguments, InputArguments, RoleArguments, direction};
-use crate::failure::{Code, Failure};
+use crate::failure::{Code, Failure, note};
+use crate::inputs::has_extension;
+
+/// Requested distance of the facets of a STEP file from its surfaces, in millimetres.
+const DEFAULT_CHORD: f64 = 0.05;
 
 pub(crate) fn run(arguments: &AssemblyArguments) -> Result<(), Failure> {
     in_thread_pool(arguments.threads, || plan_in_pool(arguments))
@@ -187,9 +191,10 @@ pub(crate) fn read_assembly(
         })?;
         options.scales.insert(name.to_owned(), factor);
     }
+    note_unused_options(source, arguments);
     let refused = |e: ReadError| Failure::new(Code::Input, format!("{e}{}", read_error_hint(&e)));
     let assembly = if step::is_step(source) {
-        let glb = step::convert_to_glb(source, arguments.chord)?;
+        let glb = step::convert_to_glb(source, arguments.chord.unwrap_or(DEFAULT_CHORD))?;
         let read = read::glb_with(source, &glb, &options).map_err(refused)?;
         read.with_files(vec![source.to_owned()])
     } else {
@@ -202,10 +207,28 @@ pub(crate) fn read_assembly(
     constraints::with_roles(assembly, roles)
 }
 
-/// Returns the option of `assembly` and `path` that avoids an error; empty if there is none.
+/// Prints a note for each option that has no effect on this kind of source.
+fn note_unused_options(source: &Path, arguments: &InputArguments) {
+    let (is_urdf, is_step) = (has_extension(source, &["urdf"]), step::is_step(source));
+    let unused = [
+        ("--joint", "URDF", !arguments.joint.is_empty() && !is_urdf),
+        ("--visual", "URDF", arguments.visual && !is_urdf),
+        ("--chord", "STEP", arguments.chord.is_some() && !is_step),
+    ];
+    for (option, kind, _) in unused.iter().filter(|(.., is_unused)| *is_unused) {
+        note(&format!("{option} has no effect: {} is not a {kind} file", source.display()));
+    }
+}
+
+/// Returns the end of the message of an error: the option of `assembly` and `path` that avoids it, or the kind of
+/// source that only the command line reads. The end is empty if there is neither.
 pub(crate) fn read_error_hint(error: &ReadError) -> &'static str {
     match error {
         ReadError::OutsideFolder { .. } => " (--allow-outside reads it)",
+        ReadError::UnknownSource { .. } => ", or a STEP file (.step, .stp)",
+        ReadError::MissingMeshes { path, .. } if has_extension(path, &["toml", "json"]) => {
+            " (--skip-missing skips missing meshes)"
+        }
         ReadError::MissingMeshes { .. } => {
             " (--package DIR names the folder of packages, --skip-missing skips missing meshes)"
         }
@@ -316,6 +339,16 @@ impl From<AssemblyError> for Failure {
             | AssemblyError::Cancelled => Code::Query,
             _ => Code::Input,
         };
-        Self::new(code, error.to_string())
+        Self::new(code, format!("{error}{}", group_hint(&error)))
     }
+}
+
+/// Returns how a group is written, after an error about a name that begins like a part; empty for other errors.
+fn group_hint(error: &AssemblyError) -> String {
+    let AssemblyError::UnknownPart { name, near: Some(near) } = error else {
+        return String::new();
+    };
+    let pairs = near.chars().zip(name.chars()).take_while(|(a, b)| a.eq_ignore_ascii_case(b));
+    let prefix: String = pairs.map(|(own, _)| own).collect();
+    format!(" `{prefix}*` stands for all names that begin with {prefix}")
 }

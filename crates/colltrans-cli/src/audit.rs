@@ -15,7 +15,7 @@ use crate::args::AuditArguments;
 use crate::assembly::output::{finding_text, head_text, source_title};
 use crate::assembly::{in_thread_pool, read_assembly, show_stages, stage_bar};
 use crate::failure::{Code, Failure, note, print, print_json};
-use crate::inputs::{check_distinct_outputs, check_output_path};
+use crate::inputs::{check_distinct_outputs, check_output_path, has_extension};
 use crate::numbers::{count_text, length_down, length_up};
 use crate::outputs::PendingFile;
 use crate::terminal::escape_line;
@@ -35,6 +35,7 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
     for path in paths.into_iter().flatten() {
         check_output_path(path, &inputs, "give the output another name")?;
     }
+    note_wrong_extensions(arguments);
     if let Some(path) = &arguments.bcf {
         check_unit(path, &assembly)?;
     }
@@ -46,6 +47,9 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
     let found = with_bar(|watch| audit(&bodies, &options, watch))?;
     for text in assembly.notes() {
         note(text);
+    }
+    if assembly.parts().len() == 1 {
+        note(&format!("{} has one part, so that there are no pairs", arguments.source.display()));
     }
     let title = source_title(&arguments.source);
     with_bar(|watch| files.write(&bodies, &options, &found, &title, watch))?;
@@ -107,6 +111,22 @@ impl OutputFiles {
             file.write(&bytes)?;
         }
         Ok(())
+    }
+}
+
+/// Prints a note for each output that has the extension of another one.
+fn note_wrong_extensions(arguments: &AuditArguments) {
+    let outputs = [
+        (&arguments.csv, "--csv writes a table (.csv)", &["csv"][..]),
+        (&arguments.report, "--report writes a web page (.html)", &["html", "htm"]),
+        (&arguments.bcf, "--bcf writes a BCF file (.bcf)", &["bcf", "bcfzip"]),
+    ];
+    let known: Vec<&str> = outputs.iter().flat_map(|output| output.2).copied().collect();
+    for (path, what, own) in outputs {
+        let is_other = |path: &&PathBuf| has_extension(path, &known) && !has_extension(path, own);
+        if let Some(path) = path.as_ref().filter(is_other) {
+            note(&format!("{}: {what}", path.display()));
+        }
     }
 }
 
@@ -183,7 +203,7 @@ fn audit_text(
         count_text(examined, "pair", "pairs"),
     );
     if ignored > 0 {
-        let _ = writeln!(text, "{} ignored", count_text(ignored, "pair", "pairs"));
+        let _ = writeln!(text, "{} ignored or glued", count_text(ignored, "pair", "pairs"));
     }
     text
 }

@@ -41,6 +41,12 @@ impl Identity {
     }
 }
 
+/// Checks whether the extension of a path is one of these, in any case.
+pub(crate) fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    let extension = path.extension().unwrap_or_default();
+    extensions.iter().any(|known| extension.eq_ignore_ascii_case(known))
+}
+
 /// Returns the input that an output would overwrite; `None` if there is none.
 pub(crate) fn overwritten_input<'a>(output: &Path, inputs: &[&'a Path]) -> Option<&'a Path> {
     let output = Identity::of_path(output)?;

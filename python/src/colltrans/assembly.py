@@ -634,7 +634,7 @@ class Assembly:
         """Returns a copy in which overlaps of these pairs at the start are ignored.
 
         Later contacts still block, and so does a motion that would deepen the overlap. With
-        ``always`` every contact of the pairs is ignored.
+        ``always`` every contact of the pairs is ignored. ``PART*`` stands for a name prefix.
         """
         return self._of(self._assembly.with_ignored(list(pairs), always))
 

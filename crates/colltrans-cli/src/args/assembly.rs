@@ -140,9 +140,9 @@ fn clearance(text: &str) -> Result<Clearance, String> {
 #[command(next_help_heading = INPUT)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub(crate) struct InputArguments {
-    /// STEP: distance of facets from the surfaces, about, in millimetres
-    #[arg(long, value_name = "L", default_value_t = 0.05, allow_hyphen_values = true, value_parser = factor, hide_short_help = true)]
-    pub(crate) chord: f64,
+    /// STEP: distance of facets from the surfaces, about, in millimetres [default: 0.05]
+    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = factor, hide_short_help = true)]
+    pub(crate) chord: Option<f64>,
     /// Parts of a file with several bodies: auto, never, names or bodies
     #[arg(
         long,
@@ -175,7 +175,7 @@ pub(crate) struct InputArguments {
     pub(crate) as_is: bool,
 }
 
-const CONTACTS: &str = "Contacts of pairs";
+const CONTACTS: &str = "Contacts of pairs (A* stands for all names that begin with A)";
 const INPUT: &str = "Input";
 
 /// Constraints of the plan.

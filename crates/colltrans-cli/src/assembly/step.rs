@@ -10,6 +10,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::Duration;
 
 use crate::failure::{Code, Failure};
+use crate::inputs::has_extension;
 use crate::progress;
 use crate::terminal::escape_line;
 
@@ -22,8 +23,7 @@ const INSTALL_HINT: &str = "STEP files need a converter: run pip install 'colltr
 
 /// Checks whether a source is a STEP file, by its extension.
 pub(super) fn is_step(path: &Path) -> bool {
-    let extension = path.extension().unwrap_or_default();
-    ["step", "stp"].iter().any(|known| extension.eq_ignore_ascii_case(known))
+    has_extension(path, &["step", "stp"])
 }
 
 /// Converts a STEP file to GLB. `chord` is the requested distance of facets from the surfaces, in millimetres.

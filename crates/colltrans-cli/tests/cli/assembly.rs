@@ -232,7 +232,7 @@ fn invalid_sources_are_rejected_with_their_place() {
         place,
         &["notes.txt"],
         3,
-        &["notes.txt: unknown kind of source; accepted: a folder of meshes", ".urdf"],
+        &["notes.txt: unknown kind of source; accepted: a folder of meshes", ".urdf", ".step"],
     );
     refused(place, &["."], 3, &["broken.off"]);
     refused(place, &["broken.off"], 3, &["broken.off", "line"]);
@@ -290,7 +290,7 @@ fn missing_urdf_meshes_are_named_or_skipped() {
     let found = facts(place, &[&["two.urdf"], &root[..]].concat());
     assert_eq!(found["unit"], "m");
     assert_eq!(found["plan"].as_array().unwrap().len(), 1);
-    let words = ["lost.urdf: 1 referenced meshes not found", "package://kit/gone.stl", "skip"];
+    let words = ["lost.urdf: 1 referenced mesh not found: ", "package://kit/gone.stl", "skip"];
     refused(place, &[&["lost.urdf"], &root[..]].concat(), 3, &words);
     refused(place, &["lost.urdf"], 3, &["3 referenced meshes not found", "package://kit/cube.off"]);
     let output = run(place, &[&["lost.urdf", "--skip-missing", "--json"], &root[..]].concat());

@@ -82,7 +82,7 @@ fn assemblies_without_violations_have_exit_code_0() {
     let only = ["cubes.toml", "--ignore", "low,high", "--ignore-always", "low,grain"];
     let [found, message] = text(place, &only, 0);
     assert!(
-        found.ends_with("1 touching, 0 nearer than the clearance\n2 pairs ignored\n"),
+        found.ends_with("1 touching, 0 nearer than the clearance\n2 pairs ignored or glued\n"),
         "{found}"
     );
     assert!(message.is_empty());
@@ -160,7 +160,10 @@ fn wrong_arguments_and_sources_are_rejected() {
         (["--within", "-1"], "must be finite and not negative"),
         (["--within", "wide"], "is not a number"),
         (["--within", "low=1"], "two names and a length, A,B=L"),
-        (["--within", "low,lo=1"], "unknown part lo; did you mean low?"),
+        (
+            ["--within", "low,lo=1"],
+            "did you mean low? `lo*` stands for all names that begin with lo",
+        ),
         (["--within", "1e70"], "invalid clearance 1e70"),
         (["--tolerance", "nan"], "--tolerance"),
         (["--ignore", "low,none"], "unknown part none"),
@@ -171,6 +174,16 @@ fn wrong_arguments_and_sources_are_rejected() {
         refused(place, &given(&words), 2, &[said]);
     }
     refused(place, &["nowhere"], 3, &["nowhere: cannot be read"]);
+    std::fs::write(place.join("model.py"), "").unwrap();
+    refused(
+        place,
+        &["model.py"],
+        3,
+        &["unknown kind of source", ".urdf", "STEP file (.step, .stp)"],
+    );
+    std::fs::write(place.join("lost.toml"), "[[part]]\nfile = 'gone.off'\n").unwrap();
+    let lost = "1 referenced mesh not found: gone.off; correct the paths, or skip missing meshes (--skip-missing";
+    refused(place, &["lost.toml"], 3, &[lost]);
     refused(place, &["broken.off"], 3, &["broken.off", "line"]);
     std::fs::create_dir(place.join("empty")).unwrap();
     refused(place, &["empty"], 3, &["the folder has no STL"]);
@@ -186,6 +199,44 @@ fn assembly_names_the_interference_of_overlapping_pairs() {
     let found = support::answered(folder.path(), &["assembly", "cubes.toml"]);
     assert!(found.contains("  low, high by 0.250001: interfering, depth 0.25"), "{found}");
     assert!(found.contains(": grain contained, depth 0.5"), "{found}");
+}
+
+#[test]
+fn ignored_and_glued_pairs_take_groups() {
+    let folder = cubes();
+    let place = folder.path();
+    for option in ["--ignore", "--ignore-always", "--glued"] {
+        let [found, _] = text(place, &["cubes.toml", option, "low,*"], 0);
+        assert!(found.contains("\n2 pairs ignored or glued\n"), "{option}: {found}");
+        let [found, _] = text(place, &["cubes.toml", option, "l*,h*"], 1);
+        assert!(found.contains("0 interfering, 1 contained"), "{option}: {found}");
+        refused(place, &["cubes.toml", option, "l*,low"], 2, &["names the same part twice"]);
+        refused(place, &["cubes.toml", option, "low,z*"], 2, &["unknown part z*"]);
+    }
+    let manifest = std::fs::read_to_string(place.join("cubes.toml")).unwrap();
+    let manifest = ["ignore = [['low', '*']]\n", &manifest].concat();
+    std::fs::write(place.join("ignored.toml"), manifest).unwrap();
+    text(place, &["ignored.toml"], 0);
+}
+
+#[test]
+fn options_without_effect_and_single_parts_have_notes() {
+    let folder = cubes();
+    let place = folder.path();
+    let options = ["--joint", "a=1", "--chord", "0.1", "--visual"];
+    let [_, notes] = text(place, &[&["cubes.toml"][..], &options].concat(), 1);
+    for (option, kind) in [("--joint", "URDF"), ("--visual", "URDF"), ("--chord", "STEP")] {
+        let note = format!("note: {option} has no effect: cubes.toml is not a {kind} file\n");
+        assert!(notes.contains(&note), "{notes}");
+    }
+    let [found, notes] = text(place, &["cube.off"], 0);
+    assert!(found.contains("0 pairs examined"), "{found}");
+    assert_eq!(notes, "note: cube.off has one part, so that there are no pairs\n");
+    let files = ["--csv", "a.html", "--report", "b.HTM", "--bcf", "c.csv"];
+    let [_, notes] = text(place, &[&["cubes.toml"][..], &files].concat(), 1);
+    assert!(notes.contains("note: a.html: --csv writes a table (.csv)\n"), "{notes}");
+    assert!(notes.contains("note: c.csv: --bcf writes a BCF file (.bcf)\n"), "{notes}");
+    assert!(!notes.contains("b.HTM"), "{notes}");
 }
 
 #[test]

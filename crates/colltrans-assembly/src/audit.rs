@@ -215,6 +215,14 @@ impl PairFinding {
         }
     }
 
+    /// Returns the index of the part inside the other one, of a contained pair.
+    pub const fn inner(&self) -> Option<usize> {
+        match self {
+            Self::Contained { inner, .. } => Some(*inner),
+            Self::Interfering(_) | Self::Touching(_) | Self::Apart(_) => None,
+        }
+    }
+
     /// Returns the distance of parts that touch or are apart; `None` for others.
     pub fn nearest(&self) -> Option<&Nearest> {
         match self {

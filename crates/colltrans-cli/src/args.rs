@@ -79,8 +79,8 @@ pub(crate) enum Command {
     Depth(Box<PlacedArguments>),
     /// List the pairs of parts of an assembly that interfere or are too near
     ///
-    /// Every pair that is neither ignored nor glued is examined. The bounds of distances, depths and volumes are proven. Exit code 1 if a pair interferes or
-    /// is nearer than its clearance, 0 if none is.
+    /// Every pair that is neither ignored nor glued is examined. The bounds of distances, depths and volumes are
+    /// proven. Exit code 1 if a pair interferes or is nearer than its clearance, 0 if none is.
     #[command(visible_alias = "clash", after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[AUDIT_NOTES]))]
     Audit(Box<AuditArguments>),
     /// Compute how far a mesh can move before another blocks it

@@ -14,9 +14,7 @@ use std::time::Duration;
 
 use colltrans::glam::{DAffine3, DVec3};
 use colltrans::solid::StartOverlap;
-use colltrans_assembly::audit::{
-    AuditOptions, AuditedPair, PairFinding, QUANTITIES, Quantity, audit,
-};
+use colltrans_assembly::audit::{AuditOptions, AuditedPair, QUANTITIES, Quantity, audit};
 use colltrans_assembly::blocking::BlockingGraph;
 use colltrans_assembly::candidates::{CandidateOptions, find_candidates};
 use colltrans_assembly::liaisons::find_liaisons;
@@ -458,14 +456,14 @@ impl Assembly {
             let index = |pair| part(pair).map_or(-1, |part| part as i64);
             found.pairs.iter().map(index).collect()
         };
-        let inner = |pair: &AuditedPair| match pair.finding {
-            PairFinding::Contained { inner, .. } => Some(inner),
-            _ => None,
-        };
         let role = |[a, b]: [usize; 2]| self.0.pair_fit(a, b).and_then(|fit| fit.role);
         let pairs = found.pairs.iter();
         Ok((
-            [column(|pair| Some(pair.parts[0])), column(|pair| Some(pair.parts[1])), column(inner)],
+            [
+                column(|pair| Some(pair.parts[0])),
+                column(|pair| Some(pair.parts[1])),
+                column(|pair| pair.finding.inner()),
+            ],
             [
                 pairs.clone().map(|pair| pair.finding.name()).collect(),
                 pairs.clone().map(|pair| role(pair.parts).map_or("", Role::name)).collect(),

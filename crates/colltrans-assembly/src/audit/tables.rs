@@ -6,7 +6,7 @@
 use colltrans::solid::SolidDepth;
 use serde_json::{Value, json};
 
-use super::{Audit, AuditOptions, AuditedPair, Interference, PairFinding};
+use super::{Audit, AuditOptions, AuditedPair, Interference};
 use crate::bodies::Bodies;
 use crate::csv::{Cell, Table};
 use crate::part::{Assembly, Part};
@@ -151,14 +151,11 @@ fn pair_role(assembly: &Assembly, pair: &AuditedPair) -> Option<&'static str> {
 
 /// Returns the name of the part inside the other one.
 fn inner_part<'a>(assembly: &'a Assembly, pair: &AuditedPair) -> Option<&'a str> {
-    match pair.finding {
-        PairFinding::Contained { inner, .. } => Some(assembly.parts()[inner].name()),
-        _ => None,
-    }
+    pair.finding.inner().map(|inner| assembly.parts()[inner].name())
 }
 
 /// Returns the pairs of an audit as a table. Cells without a value are empty. `x`, `y`, `z` are the
-/// [place](PairFinding::place) of the pair.
+/// [place](super::PairFinding::place) of the pair.
 pub fn audit_csv(assembly: &Assembly, audit: &Audit) -> String {
     let numbers = QUANTITIES.iter().flat_map(|quantity| quantity.columns);
     let heads = ["first", "second", "finding", "violation"].iter().chain(numbers);

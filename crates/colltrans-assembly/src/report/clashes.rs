@@ -344,8 +344,8 @@ pub(super) fn facts(assembly: &Assembly, pair: &AuditedPair) -> Vec<Fact> {
     let digits = length_digits(pair);
     let mut facts = Vec::new();
     let mut push = |name, value| facts.push(Fact { name, value });
-    if let PairFinding::Contained { inner, .. } = &pair.finding {
-        push("inside the other part", shortened(assembly.parts()[*inner].name(), MAX_NAME));
+    if let Some(inner) = pair.finding.inner() {
+        push("inside the other part", shortened(assembly.parts()[inner].name(), MAX_NAME));
     }
     if let Some(found) = pair.finding.interference()
         && let Some(depth) = found.known_depth()

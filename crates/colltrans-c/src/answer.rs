@@ -7,13 +7,11 @@ use colltrans::record::{
 };
 use colltrans::solid::{SolidCast, SolidContact};
 use colltrans::{
-    AnyClearance, AnyDistance, Bounded, ByKind, Cast, Clearance, Contact, ContactRange,
-    ConvexPolyhedron, FreeReason, Grazing, InputVertex, Outcome as CastOutcome, OverlapAhead,
-    Separated, Solid,
+    AnyDistance, Bounded, Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, FreeReason,
+    Grazing, InputVertex, Outcome as CastOutcome, OverlapAhead, Separated, Solid,
 };
 
 use crate::COLLTRANS_NO_VERTEX;
-use crate::cast::AnyCast;
 
 /// Outcome of a query.
 #[repr(C)]
@@ -463,21 +461,6 @@ impl CastAnswer {
         let end = cast.options().before.unwrap_or(f64::INFINITY);
         self.distance = clearance.distance().map_or(f64::NAN, |distance| distance.min(end));
         self.tolerance = cast.tolerance();
-    }
-
-    /// Converts the clearance of bodies of either kind. Returns an empty answer if the kinds differ.
-    pub(crate) fn of_any_clearance(
-        clearance: &AnyClearance,
-        cast: &AnyCast<'_>,
-        featured: bool,
-    ) -> Self {
-        let mut answer = Self::NONE;
-        match (clearance, cast) {
-            (ByKind::Convex(of), ByKind::Convex(cast)) => answer.set_clearance(of, cast, featured),
-            (ByKind::Solid(of), ByKind::Solid(cast)) => answer.set_solid_clearance(of, cast),
-            _ => {}
-        }
-        answer
     }
 
     /// Returns the answer of a body that nothing stops in a scene.

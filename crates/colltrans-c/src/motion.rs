@@ -168,6 +168,22 @@ pub unsafe extern "C" fn colltrans_motion_pose_at(
     })
 }
 
+/// Answers a query about two bodies along their motions.
+unsafe fn answer(
+    bodies: [*const Body; 2],
+    motions: [*const Motion; 2],
+    options: *const CastOptions,
+    answer: *mut MotionAnswer,
+    record: impl FnOnce(&AnyMotionCast<'_>) -> Fallible<MotionRecord>,
+) -> Status {
+    guard(|| unsafe {
+        let answer = Output::new(answer, "answer")?;
+        let cast = motion_cast(bodies, motions, options)?;
+        answer.set(MotionAnswer::from(&record(&cast)?));
+        Ok(())
+    })
+}
+
 /// Finds the first time at which the bodies meet along their motions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn colltrans_motion_first_contact(
@@ -178,16 +194,15 @@ pub unsafe extern "C" fn colltrans_motion_first_contact(
     options: *const CastOptions,
     answer: *mut MotionAnswer,
 ) -> Status {
-    guard(|| unsafe {
-        let answer = Output::new(answer, "answer")?;
-        let cast = motion_cast([moving, fixed], [moving_motion, fixed_motion], options)?;
-        let record = match &cast {
-            ByKind::Convex(cast) => MotionRecord::from_outcome(&cast.first_contact()?, cast),
-            ByKind::Solid(cast) => MotionRecord::of_solids(&cast.first_contact()?, cast),
-        };
-        answer.set(MotionAnswer::from(&record));
-        Ok(())
-    })
+    let (bodies, motions) = ([moving, fixed], [moving_motion, fixed_motion]);
+    unsafe {
+        self::answer(bodies, motions, options, answer, |cast| {
+            Ok(match cast {
+                ByKind::Convex(cast) => MotionRecord::from_outcome(&cast.first_contact()?, cast),
+                ByKind::Solid(cast) => MotionRecord::of_solids(&cast.first_contact()?, cast),
+            })
+        })
+    }
 }
 
 /// Finds how far the bodies can move along their motions. Bodies that touch at the start do not block each other unless
@@ -201,14 +216,13 @@ pub unsafe extern "C" fn colltrans_motion_clearance(
     options: *const CastOptions,
     answer: *mut MotionAnswer,
 ) -> Status {
-    guard(|| unsafe {
-        let answer = Output::new(answer, "answer")?;
-        let cast = motion_cast([moving, fixed], [moving_motion, fixed_motion], options)?;
-        let record = match &cast {
-            ByKind::Convex(cast) => MotionRecord::of_clearance(&cast.clearance()?, cast),
-            ByKind::Solid(cast) => MotionRecord::of_solid_clearance(&cast.clearance()?, cast),
-        };
-        answer.set(MotionAnswer::from(&record));
-        Ok(())
-    })
+    let (bodies, motions) = ([moving, fixed], [moving_motion, fixed_motion]);
+    unsafe {
+        self::answer(bodies, motions, options, answer, |cast| {
+            Ok(match cast {
+                ByKind::Convex(cast) => MotionRecord::of_clearance(&cast.clearance()?, cast),
+                ByKind::Solid(cast) => MotionRecord::of_solid_clearance(&cast.clearance()?, cast),
+            })
+        })
+    }
 }

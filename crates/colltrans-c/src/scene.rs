@@ -1,6 +1,6 @@
 //! Scenes: one body against many placed ones.
 
-use colltrans::{ObstacleId, Obstacles, SceneQuery, UnknownObstacle};
+use colltrans::{ByKind, ObstacleId, Obstacles, SceneQuery, UnknownObstacle};
 
 use crate::COLLTRANS_NO_OBSTACLE;
 use crate::answer::{CastAnswer, DistanceAnswer};
@@ -213,8 +213,16 @@ pub unsafe extern "C" fn colltrans_scene_clearance(
             };
             let cast = query.cast_with(*id, direction).ok_or_else(|| unknown_obstacle(id.0))?;
             let featured = options.features != 0;
-            let of_obstacle = CastAnswer::of_any_clearance(clearance, &cast, featured);
-            Ok((id.0, CastAnswer { distance, ..of_obstacle }))
+            let mut answer = CastAnswer::NONE;
+            match (clearance, &cast) {
+                (ByKind::Convex(of), ByKind::Convex(cast)) => {
+                    answer.set_clearance(of, cast, featured);
+                }
+                (ByKind::Solid(of), ByKind::Solid(cast)) => answer.set_solid_clearance(of, cast),
+                // The library answers in the kind of the cast.
+                _ => {}
+            }
+            Ok((id.0, CastAnswer { distance, ..answer }))
         })?;
         obstacle.set(id);
         answer.set(found);

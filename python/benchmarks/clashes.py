@@ -189,7 +189,7 @@ def planted(folder):
 
 
 def sheets(folder):
-    """Walls (open quads) that stand on a floor, end above it, or pass through it."""
+    """Walls (open quads) that end on a floor or above it, or pass through it."""
 
     def wall(x, z):
         return [(x, 1, z), (x, 3, z), (x, 3, 2), (x, 1, 2)], [(0, 1, 2, 3)]

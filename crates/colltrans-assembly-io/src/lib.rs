@@ -23,3 +23,8 @@ pub use read::ReadOptions;
 pub use read::read;
 #[cfg(feature = "files")]
 pub use robot::Robot;
+
+/// Compiles and runs the example of the README as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

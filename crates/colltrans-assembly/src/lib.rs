@@ -56,3 +56,8 @@ pub use error::AssemblyError;
 pub use findings::{Analysis, AnalysisRequest};
 pub use part::{Assembly, Ignored, Part, Piece};
 pub use watch::{Stage, Watch};
+
+/// Compiles and runs the example of the README as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

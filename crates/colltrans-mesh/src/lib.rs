@@ -237,3 +237,8 @@ pub fn parse_with(
     mesh.merge_open_edges(options.merge_tolerance, precision, places);
     Ok(mesh)
 }
+
+/// Compiles and runs the example of the README as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

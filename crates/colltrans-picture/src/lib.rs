@@ -24,3 +24,8 @@ pub use style::{
     SMOOTH_COSINE,
 };
 pub use view::View;
+
+/// Compiles and runs the example of the README as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

@@ -200,7 +200,12 @@ pub use colltrans_scene::{DirectionMap, FixedRotations};
 #[doc(inline)]
 pub use colltrans_solid::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind, Solid};
 
-/// The example of the README, compiled and run as a test.
+/// The example of this crate's README, compiled and run as a test.
+#[cfg(all(doctest, feature = "json"))]
+#[doc = include_str!("../README.md")]
+pub struct CrateReadme;
+
+/// The example of the repository's README, compiled and run as a test.
 #[cfg(all(doctest, feature = "json"))]
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
@@ -249,3 +254,38 @@ pub struct Solids;
 #[cfg(all(doctest, feature = "json"))]
 #[doc = include_str!("../../../docs/guide/proofs.md")]
 pub struct Proofs;
+
+/// The example of the README of `colltrans-kernel`, compiled and run as a test.
+#[cfg(all(doctest, feature = "json"))]
+#[doc = include_str!("../../colltrans-kernel/README.md")]
+pub struct KernelReadme;
+
+/// The example of the README of `colltrans-convex`, compiled and run as a test.
+#[cfg(all(doctest, feature = "json"))]
+#[doc = include_str!("../../colltrans-convex/README.md")]
+pub struct ConvexReadme;
+
+/// The example of the README of `colltrans-solid`, compiled and run as a test.
+#[cfg(all(doctest, feature = "json"))]
+#[doc = include_str!("../../colltrans-solid/README.md")]
+pub struct SolidBodiesReadme;
+
+/// The example of the README of `colltrans-motion`, compiled and run as a test.
+#[cfg(all(doctest, feature = "json"))]
+#[doc = include_str!("../../colltrans-motion/README.md")]
+pub struct RotationReadme;
+
+/// The example of the README of `colltrans-removal`, compiled and run as a test.
+#[cfg(all(doctest, feature = "json"))]
+#[doc = include_str!("../../colltrans-removal/README.md")]
+pub struct RemovalReadme;
+
+/// The example of the README of `colltrans-scene`, compiled and run as a test.
+#[cfg(all(doctest, feature = "json"))]
+#[doc = include_str!("../../colltrans-scene/README.md")]
+pub struct SceneReadme;
+
+/// The example of the README of `colltrans-proof`, compiled and run as a test.
+#[cfg(all(doctest, feature = "json"))]
+#[doc = include_str!("../../colltrans-proof/README.md")]
+pub struct ProofFilesReadme;

@@ -1,46 +1,60 @@
-//! Collision translations of convex polyhedra: the distance that one body can move before it touches another
-//! one.
-//!
-//! A convex body `P`, the *moving* one, is translated along a direction `d`. A convex body `Q` is *fixed*. A
-//! [`Cast`] computes the *collision translation*
-//!
-//! `coll = min { t : P + t d meets Q }`
-//!
-//! together with the contact normal, bounds that enclose `coll`, a contact point on each body, and the
-//! vertices, edges or faces in contact. If the bodies never meet, the cast proves it.
-//! `t` ranges over all real numbers. A negative value is a contact behind the moving body, or an overlap at
-//! the start. Every answer has a proof, which can be checked without trust in the search.
+//! Exact collision queries of rigid polyhedra: shape casts, swept collisions under rotation, distances,
+//! penetration depths and removal directions. Bounds of each answer enclose the exact result.
+//! A *certificate* proves them, for solids on request. A program can verify it without a search and without
+//! trust in this library.
 //!
 //! ```
 //! use colltrans::glam::DVec3;
 //! use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
 //!
-//! // A pyramid of height 1, and a plate of 4 x 4 x 1 with its top at z = 0.
-//! let pyramid = ConvexPolyhedron::from_points(&[
-//!     DVec3::new(-1.0, -1.0, 1.0),
-//!     DVec3::new(1.0, -1.0, 1.0),
-//!     DVec3::new(1.0, 1.0, 1.0),
-//!     DVec3::new(-1.0, 1.0, 1.0),
-//!     DVec3::ZERO,
-//! ])?;
+//! // A cube, 3 above a plate, moves downwards.
+//! let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
 //! let plate = ConvexPolyhedron::cuboid(DVec3::new(-2.0, -2.0, -1.0), DVec3::new(2.0, 2.0, 0.0))?;
-//!
-//! // The apex of the pyramid starts at (0.5, 0, 3) and moves downwards.
-//! let start = Pose::from_translation(DVec3::new(0.5, 0.0, 3.0))?;
-//! let cast = Cast::new(pyramid.at(start), plate.at(Pose::IDENTITY), DVec3::NEG_Z)?;
-//! let Outcome::Contact(contact) = cast.first_contact()? else {
-//!     unreachable!("the plate is below the pyramid")
-//! };
-//! assert_eq!(contact.translation, 3.0);
-//! assert_eq!(contact.normal, DVec3::NEG_Z);
-//! assert_eq!(contact.witness_points(&cast).on_fixed, DVec3::new(0.5, 0.0, 0.0));
-//! let features = contact.features(&cast);
-//! assert_eq!((features.moving.kind(), features.fixed.kind()), ("vertex", "face"));
-//!
-//! // The check of the proof uses only the two bodies.
+//! let start = Pose::from_translation(DVec3::Z * 3.0)?;
+//! let cast = Cast::new(cube.at(start), plate.at(Pose::IDENTITY), DVec3::NEG_Z)?;
+//! let Outcome::Contact(contact) = cast.first_contact()? else { panic!("the plate is below") };
+//! assert_eq!((contact.translation, contact.normal), (3.0, DVec3::NEG_Z));
 //! assert!(cast.verify(&contact.certificate)? <= contact.certificate.rounding);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Questions
+//!
+//! | question | query | answer |
+//! |---|---|---|
+//! | How far can a body move before it touches another? | [`Cast::first_contact`], short [`cast()`] | [`Outcome`] |
+//! | Where is the first, where the last contact? | [`Cast::contact_range`] | [`ContactRange`] |
+//! | How far can it move from where it is, and what stops it? | [`Cast::clearance`] | [`Clearance`] |
+//! | How far back until an overlap ends? | [`Cast::directional_depth`] | [`DirectionalDepth`] |
+//! | Do the bodies intersect in their poses? | [`Cast::intersects`] | [`Intersection`] |
+//! | How far apart are they, and where? | [`Pair::distance`] | [`Distance`] |
+//! | How far apart, as two bounds? | [`Pair::distance_bounds`] | `[f64; 2]` |
+//! | Are they closer than a length? | [`Pair::within`] | [`Within`] |
+//! | How deep do they overlap? | [`Pair::depth`] | [`Depth`] |
+//! | When do rotating bodies meet? | [`MotionCast`](motion::MotionCast) | [`MotionOutcome`](motion::MotionOutcome) |
+//! | Which links of a robot meet? | [`PathCast`](motion::path::PathCast) | [`PathOutcome`](motion::path::PathOutcome) |
+//! | Along which directions can a body be removed? | [`removal::directions`] | all of them, classified |
+//! | In which moves can a body be removed? | [`removal::path`] | a path, or a proof of none |
+//! | Which of many bodies is nearest? | [`SceneQuery::nearest`] | [`Nearest`] |
+//! | Which of them are closer than a length? | [`SceneQuery::within`] | [`Nearby`] |
+//! | Which of them stops a body first? | [`SceneQuery::clearance`] | [`SceneClearance`] |
+//! | Does a proof hold? | [`Cast::verify`] | the proven gap |
+//! | What if the same pair moves on and on? | [`Tracker`], [`FixedRotations`] | those of a cast |
+//!
+//! The crate `colltrans-mesh` reads bodies from files, `colltrans-assembly` plans and audits assemblies, `colltrans-cli`
+//! is the command line program.
+//!
+//! # Casts
+//!
+//! A body `P`, the *moving* one, is translated along a direction `d`. A body `Q` is *fixed*. A [`Cast`] computes the
+//! *collision translation*
+//!
+//! `coll = min { t : P + t d meets Q }`
+//!
+//! together with the contact normal, bounds that enclose `coll`, a contact point on each body
+//! ([`Contact::witness_points`]), and the vertices, edges or faces in contact ([`Contact::features`]). If the bodies
+//! never meet, the cast proves it. `t` ranges over all real numbers. A negative value is a contact behind the moving
+//! body, or an overlap at the start.
 //!
 //! # Bodies
 //!
@@ -59,25 +73,7 @@
 //! are `f64`. Numbers other than 0 have magnitudes from [`MIN_MAGNITUDE`] to [`MAX_MAGNITUDE`], `2^-200` to
 //! `2^200`.
 //!
-//! # Queries and answers
-//!
-//! | query | result | type of the answer |
-//! |---|---|---|
-//! | [`Cast::first_contact`], short [`cast()`] | translation of the first contact | [`Outcome`] |
-//! | [`Cast::contact_range`] | translations of the first and the last contact | [`ContactRange`] |
-//! | [`Cast::clearance`] | free travel from the current position | [`Clearance`] |
-//! | [`Cast::directional_depth`] | travel backwards that ends an overlap | [`DirectionalDepth`] |
-//! | [`Cast::intersects`] | whether the bodies intersect in their current poses | [`Intersection`] |
-//! | [`Cast::verify`] | check of a proof | the proven gap |
-//! | [`Pair::distance`] | distance and nearest points | [`Distance`] |
-//! | [`Pair::distance_bounds`] | bounds of the distance alone | `[f64; 2]` |
-//! | [`Pair::within`] | whether the distance is less than a length | [`Within`] |
-//! | [`Pair::depth`] | shortest translation that separates the bodies | [`Depth`] |
-//! | [`motion::MotionCast::first_contact`] | time of the first contact of rotating bodies | [`motion::MotionOutcome`] |
-//! | [`motion::path::PathCast::first_contact`] | first contact of bodies that joints carry | [`motion::path::PathOutcome`] |
-//! | [`SceneQuery::nearest`] | nearest of many bodies | [`Nearest`] |
-//! | [`SceneQuery::within`] | bodies that are closer than a length | [`Nearby`] |
-//! | [`SceneQuery::clearance`] | free travel in a scene, and the body that limits it | [`SceneClearance`] |
+//! # Answers
 //!
 //! Convex bodies and solids have the same queries and types of answers, for example `Clearance<Solid>`, with
 //! different types of contacts. The directional depth and trackers exist only for convex bodies, the [least

@@ -574,7 +574,7 @@ class Assembly:
             bodies.
         chord : float
             For a STEP file: the approximate distance of facets from its surfaces, in millimetres.
-            It needs ``pip install 'colltrans[step]'``.
+            It needs cadquery-ocp-novtk (``pip install 'colltrans[step]'``).
 
         Returns
         -------

@@ -1,9 +1,10 @@
 """Converts STEP files to GLB, and measures the chord error of every part.
 
-``python -m colltrans.step FILE -o OUT.glb`` needs ``pip install 'colltrans[step]'``
-(cadquery-ocp-novtk, which contains OpenCASCADE). It writes a GLB file that ``colltrans assembly``
-and any viewer read. It prints one JSON object: the name of every part, its number of solids and its
-*chord error*, the distance of its facets from the surface that they approximate.
+``python -m colltrans.step FILE -o OUT.glb`` needs cadquery-ocp-novtk, which contains OpenCASCADE:
+``pip install 'colltrans[step]'``, in a checkout ``pip install './python[step]'``. It writes a GLB
+file that ``colltrans assembly`` and any viewer read. It prints one JSON object: the name of every
+part, its number of solids and its *chord error*, the distance of its facets from the surface that
+they approximate.
 
 The product tree comes from OpenCASCADE's document (XCAF), including external files. A part is a
 product in which no other product is placed. Curves and points are left out; a note names the parts
@@ -760,7 +761,7 @@ def convert(
         import OCP.STEPCAFControl  # noqa: F401
     except ImportError as error:
         raise StepError(
-            "STEP files need cadquery-ocp-novtk: pip install 'colltrans[step]'"
+            "STEP files need cadquery-ocp-novtk: pip install 'cadquery-ocp-novtk>=8.0.1'"
         ) from error
     path = Path(path)
     with path.open("rb") as file:

@@ -17,9 +17,9 @@ use crate::terminal::escape_line;
 /// Environment variable with another converter and its first arguments.
 const VARIABLE: &str = "COLLTRANS_STEP";
 /// Error message without a converter.
-const INSTALL_HINT: &str = "STEP files need a converter: run pip install 'colltrans[step]' for the Python of `python3`, or \
-                       name another one in COLLTRANS_STEP; or tessellate each part to a mesh file in its place, and give \
-                       the folder";
+const INSTALL_HINT: &str = "STEP files need a converter: run pip install 'colltrans[step]' (in a checkout: \
+                       pip install './python[step]') for the Python of `python3`, or name another one in \
+                       COLLTRANS_STEP; or tessellate each part to a mesh file in its place, and give the folder";
 
 /// Checks whether a source is a STEP file, by its extension.
 pub(super) fn is_step(path: &Path) -> bool {
@@ -49,7 +49,7 @@ pub(super) fn convert_to_glb(path: &Path, chord: f64) -> Result<Vec<u8>, Failure
         return Ok(glb);
     }
     let last = messages.last().map_or("no message", String::as_str);
-    Err(if last.contains("No module named") || last.contains("colltrans[step]") {
+    Err(if last.contains("No module named") || last.contains("cadquery-ocp-novtk") {
         failed(INSTALL_HINT.into())
     } else {
         failed(format!("{name} failed ({status}): {}", escape_line(last)))

@@ -47,10 +47,14 @@ fn step_file_is_converted_to_glb() {
     for (converter, words) in [
         (
             "/nowhere/converter".to_owned(),
-            &["a.step", "pip install 'colltrans[step]'", "COLLTRANS_STEP"][..],
+            &["a.step", "pip install 'colltrans[step]'", "./python[step]", "COLLTRANS_STEP"][..],
         ),
         (
             converter(at, "echo 'No module named colltrans' >&2; exit 1"),
+            &["pip install 'colltrans[step]'"],
+        ),
+        (
+            converter(at, "echo 'STEP files need cadquery-ocp-novtk: pip install it' >&2; exit 1"),
             &["pip install 'colltrans[step]'"],
         ),
     ] {

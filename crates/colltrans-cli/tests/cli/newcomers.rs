@@ -419,7 +419,7 @@ fn info_of_a_nan_vertex_has_no_volume() {
 fn help_lines_fit_the_terminal() {
     let folder = folder();
     let version = colltrans(folder.path()).arg("--version").output().unwrap();
-    assert_eq!(stdout(&version), "colltrans 0.2.0\n");
+    assert_eq!(stdout(&version), concat!("colltrans ", env!("CARGO_PKG_VERSION"), "\n"));
     for command in
         ["", "cast", "clearance", "clear", "batch", "assembly", "info", "replay", "files"]
     {

@@ -152,6 +152,23 @@ def test_a_version_is_not_released_twice(tmp_path: Path) -> None:
         release.set_version(root, "1.0", "2099-01-31")
 
 
+def test_the_workflow_checks_the_tag_first_and_publishes_after_an_approval() -> None:
+    workflow = (ROOT / ".github/workflows/release.yml").read_text(encoding="utf-8")
+    # Actions are pinned by their commits.
+    used = re.findall(r"uses: (\S+)", workflow)
+    assert used and all(re.fullmatch(r"[\w./-]+@[0-9a-f]{40}", action) for action in used)
+    _, *parts = re.split(r"(?m)^  ([a-z-]+):\n", workflow[workflow.index("\njobs:\n") :])
+    jobs = dict(zip(parts[::2], parts[1::2], strict=True))
+    assert '.ci/release.py check --tag "$TAG"' in jobs.pop("tag")
+    assert all("\n    needs: " in f"\n{job}" for job in jobs.values())
+    publishing = [job for job in jobs.values() if "id-token: write" in job]
+    assert len(publishing) == 2
+    for job in [*publishing, jobs["draft"]]:
+        assert "\n    if: github.ref_type == 'tag'\n" in job
+    for job in publishing:
+        assert "\n    environment: release\n" in job and "\n    needs: draft\n" in job
+
+
 def recipe() -> str:
     return (ROOT / "python/conda/recipe.yaml").read_text(encoding="utf-8")
 

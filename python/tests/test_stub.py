@@ -76,3 +76,17 @@ def test_a_wheel_is_rewritten_with_docstrings_in_its_stub(tool: ModuleType, tmp_
     subprocess.run([*command, "unpack", wheel, "--dest", tmp_path / "again"], check=True)
     stub = tmp_path / "again" / content.name / "colltrans" / STUB.name
     assert stub.read_text() == tool.documented(STUB.read_text(), _colltrans)
+
+    # A wheel for another platform, whose extension cannot be loaded here.
+    (content / "colltrans" / Path(_colltrans.__file__ or "").name).write_bytes(
+        b"of another platform"
+    )
+    foreign = tmp_path / "foreign"
+    foreign.mkdir()
+    subprocess.run([*command, "pack", content, "--dest", foreign], check=True)
+    (other,) = foreign.glob("*.whl")
+    tool.write_docstrings(other, wheel)
+    subprocess.run([*command, "unpack", other, "--dest", foreign / "again"], check=True)
+    assert (
+        foreign / "again" / content.name / "colltrans" / STUB.name
+    ).read_text() == stub.read_text()

@@ -1,9 +1,11 @@
 """Writes the docstrings of the extension into the stub of each wheel: editors read only the stub.
 
 ``python python/tools/docstrings.py dist/*.whl`` changes the wheels in place. It loads their
-extension, so it runs on a platform that they are for. It needs the package ``wheel``.
+extension, so it runs on a platform that they are for. ``--like WHEEL`` takes the stub of a finished
+wheel instead, for wheels of other platforms. It needs the package ``wheel``.
 """
 
+import argparse
 import ast
 import inspect
 import subprocess
@@ -15,6 +17,7 @@ from tempfile import TemporaryDirectory
 from textwrap import indent
 from types import ModuleType
 from typing import Any
+from zipfile import ZipFile
 
 
 def documented(stub: str, extension: ModuleType) -> str:
@@ -63,16 +66,20 @@ def _insert(lines: list[str], node: Any, text: str) -> None:
         lines.insert(line, docstring)
 
 
-def write_docstrings(wheel: Path) -> None:
-    """Rewrites a wheel with docstrings in its stub."""
+def write_docstrings(wheel: Path, like: Path | None = None) -> None:
+    """Rewrites a wheel with docstrings in its stub, or with the stub of a finished wheel."""
     # Windows cannot remove an extension that is loaded.
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         _run_wheel("unpack", wheel, "--dest", folder)
         (content,) = Path(folder).iterdir()
         package = content / "colltrans"
-        (library,) = (*package.glob("_colltrans*.so"), *package.glob("_colltrans*.pyd"))
         stub = package / "_colltrans.pyi"
-        stub.write_text(documented(stub.read_text("utf-8"), _load(library)), "utf-8")
+        if like is not None:
+            with ZipFile(like) as finished:
+                stub.write_bytes(finished.read("colltrans/_colltrans.pyi"))
+        else:
+            (library,) = (*package.glob("_colltrans*.so"), *package.glob("_colltrans*.pyd"))
+            stub.write_text(documented(stub.read_text("utf-8"), _load(library)), "utf-8")
         _run_wheel("pack", content, "--dest", wheel.parent)
 
 
@@ -89,5 +96,9 @@ def _run_wheel(*words: str | Path) -> None:
 
 
 if __name__ == "__main__":
-    for name in sys.argv[1:]:
-        write_docstrings(Path(name))
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("wheels", type=Path, nargs="+")
+    parser.add_argument("--like", type=Path)
+    given = parser.parse_args()
+    for each in given.wheels:
+        write_docstrings(each, given.like)

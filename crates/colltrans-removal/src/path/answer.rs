@@ -9,7 +9,8 @@ use super::enclosed::{Enclosure, EnclosureResult, NoRemovalPath, cell_axes};
 use super::options::{Order, RemovalOptions, SearchWork};
 use super::pairs::{BodyPair, bounding_box};
 use super::proof::{LegProof, certified_legs};
-use super::search::{Group, Move, Search, SearchEnd, SearchScale};
+use super::scene::RemovalScene;
+use super::search::{BodyRoles, Group, Move, Search, SearchEnd, SearchScale};
 use crate::directions::FreeError;
 use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::cast::Cast;
@@ -18,7 +19,11 @@ use colltrans_solid::SolidCast;
 use colltrans_solid::body::{AsSolid, Solid, check_is_not_rounded};
 
 /// Tolerance of the search, as a fraction of the tolerance of the answer.
-const SEARCH_TOLERANCE_SHARE: f64 = 0.8;
+pub(super) const SEARCH_TOLERANCE_SHARE: f64 = 0.8;
+/// Distance from a contact at which a leg stops, as a fraction of the difference of both gaps: 0.1 of the tolerance.
+const SLACK_SHARE: f64 = 0.5;
+/// Bodies below this fraction of the largest one have the minimum moves of a body of this size.
+const SMALL_BODY: f64 = 0.125;
 /// Maximum number of bodies of a search.
 pub(super) const MAX_BODIES: usize = Group::BITS as usize - 1;
 
@@ -118,7 +123,7 @@ impl RemovalSearch {
     ///
     /// Motions are relative to a *base*, which is the first fixed body, or otherwise the largest one. Among
     /// more than two bodies, those that overlap at the start move together. For fewer than two or more than
-    /// 63 bodies the answer is [`Self::NotFound`] without a search.
+    /// 127 bodies the answer is [`Self::NotFound`] without a search.
     ///
     /// # Errors
     /// Returns the errors of [`Self::search`], and [`FreeError::Cancelled`] after the flag is set. Overlaps of
@@ -132,38 +137,71 @@ impl RemovalSearch {
         if !(2..=MAX_BODIES).contains(&bodies.len()) {
             return Ok(Self::NotFound { searched: SearchWork::default() });
         }
-        for placed in bodies {
+        for (k, placed) in bodies.iter().enumerate() {
             check_is_not_rounded(placed.body.radius()).map_err(QueryError::from)?;
+            if !placed.body.is_closed() {
+                return Err(FreeError::Open { which: if k == 0 { "moving" } else { "fixed" } });
+            }
         }
+        let tolerance = largest_tolerance(bodies, options)?;
+        RemovalScene::with_tolerance(bodies, tolerance).with_fixed(fixed).search(options, cancel)
+    }
+
+    /// Searches for a removal path in a scene, see [`RemovalScene::search`].
+    pub(super) fn search_scene(
+        scene: &RemovalScene<'_>,
+        options: &RemovalOptions,
+        cancel: Option<&AtomicBool>,
+    ) -> Result<Self, FreeError> {
         let wrong = |d: &&DVec3| !(d.is_finite() && d.try_normalize().is_some());
         if let Some(&direction) = options.directions.iter().find(wrong) {
             return Err(QueryError::Direction { direction }.into());
         }
-        let tolerance = largest_tolerance(bodies, options)?;
+        if !scene.has_valid_count() {
+            return Ok(Self::NotFound { searched: SearchWork::default() });
+        }
+        let (bodies, fixed) = (&scene.bodies, &scene.fixed);
+        let tolerances = scene.blocking_pairs().map(|pair| pair.tolerance);
+        let tolerance = tolerances.fold(0.0, f64::max);
         let boxes: Vec<Aabb> = bodies.iter().map(bounding_box).collect();
-        let scale = search_scale(bodies, tolerance, options.step);
+        let slacks = scene.blocking_pairs().map(|pair| pair.slack).filter(|slack| *slack > 0.0);
+        let scale = search_scale(bodies, slacks.reduce(f64::min).unwrap_or(0.0), options.step);
+        let steps = least_moves(bodies, scale.step, options.step);
         let mut pairs = Vec::new();
         for j in 1..bodies.len() {
             for i in 0..j {
-                let both = [bodies[i], bodies[j]];
+                let relation = *scene.relation([i, j]).0;
+                let step = steps[i].min(steps[j]);
                 pairs.push(BodyPair::new(
-                    both,
+                    relation,
+                    [bodies[i], bodies[j]],
                     [boxes[i], boxes[j]],
-                    (SEARCH_TOLERANCE_SHARE * tolerance, scale.step),
+                    step,
                 )?);
             }
         }
         if let [BodyPair { overlap: Some(place), .. }] = pairs[..] {
             return Err(FreeError::Overlapping { place });
         }
-        let mask = fixed.iter().filter(|&&k| k < bodies.len()).fold(0, |mask, &k| mask | 1 << k);
+        let members = |list: &[usize]| {
+            list.iter().filter(|&&k| k < bodies.len()).fold(0, |mask: Group, &k| mask | 1 << k)
+        };
+        let mask = members(fixed);
         let first_fixed = fixed.iter().copied().find(|&k| k < bodies.len());
         let base = first_fixed.unwrap_or_else(|| largest_body(bodies));
         let directions = candidate_directions(bodies, &options.directions);
-        let roles = (bodies.len(), mask | 1 << base, base);
+        let roles = BodyRoles {
+            fixed: mask | 1 << base,
+            base,
+            leaving: scene.leaving.as_ref().map_or(Group::MAX, |leaving| members(leaving)),
+            steps,
+        };
         let mut search = Search::new(pairs, roles, directions, scale, options, cancel);
-        let certified = |moves: &[Move]| certified_legs(bodies, moves, tolerance);
-        let mut provable = bodies.len() == 2 && options.cells > 0;
+        let certified = |moves: &[Move]| certified_legs(scene, moves);
+        let closed =
+            scene.blocking_pairs().all(|pair| pair.proven.iter().all(|b| b.body.is_closed()));
+        let provable_pair = scene.blocking_pairs().next().filter(|_| bodies.len() == 2 && closed);
+        let mut provable = provable_pair.is_some() && options.cells > 0;
         let fewest = options.order == Some(Order::FewestLegs);
         let (mut cells, mut proposal, mut places) =
             (None, None, RemovalOptions::FIRST_PROOF_PLACEMENTS);
@@ -179,7 +217,7 @@ impl RemovalSearch {
                     none => {
                         let axes =
                             cell_axes(&wall_axes(&bodies[base], box_center(&bodies[1 - base])));
-                        let both = [bodies[0], bodies[1]];
+                        let both = provable_pair.map_or([bodies[0], bodies[1]], |pair| pair.proven);
                         none.insert(Enclosure::new(both, tolerance, scale.far, axes)?)
                     }
                 };
@@ -250,14 +288,28 @@ fn box_center(body: &Placed<'_, Solid>) -> DVec3 {
     body.pose.transform_point(body.body.bounds().center())
 }
 
-fn search_scale(bodies: &[Placed<'_, Solid>], tolerance: f64, step: f64) -> SearchScale {
-    let size = |body: &Placed<'_, Solid>| body.body.bounds().side_lengths().max_element();
-    let far = bodies.iter().map(size).sum::<f64>() * 2.0;
-    let step = step * bodies.iter().map(size).fold(0.0, f64::max);
+fn body_size(body: &Placed<'_, Solid>) -> f64 {
+    body.body.bounds().side_lengths().max_element()
+}
+
+/// Returns the lengths of a search. `slack` is the least difference of the gaps of the search and of the proofs.
+fn search_scale(bodies: &[Placed<'_, Solid>], slack: f64, step: f64) -> SearchScale {
+    let far = bodies.iter().map(body_size).sum::<f64>() * 2.0;
+    let step = step * bodies.iter().map(body_size).fold(0.0, f64::max);
     // Without a tolerance there is no slack. The grid only has to keep sums exact.
-    let off = if tolerance > 0.0 { (0.1 * tolerance).min(0.1 * step) } else { 1e-6 * step };
-    let fine = if tolerance > 0.0 { off / 16.0 } else { far * f64::EPSILON * 4096.0 };
-    SearchScale { far, step, grain: step, off, grid: power_of_two(fine) }
+    let off = if slack > 0.0 { (SLACK_SHARE * slack).min(0.1 * step) } else { 1e-6 * step };
+    let fine = if slack > 0.0 { off / 16.0 } else { far * f64::EPSILON * 4096.0 };
+    SearchScale { far, step, off, grid: power_of_two(fine) }
+}
+
+/// Returns the minimum length of a move for each body: a share of its size, or of an eighth of the largest size if
+/// that is more. For two bodies it is `step` for both.
+fn least_moves(bodies: &[Placed<'_, Solid>], step: f64, share: f64) -> Vec<f64> {
+    let least = |body: &Placed<'_, Solid>| match bodies.len() {
+        2 => step,
+        _ => (share * body_size(body)).max(step * SMALL_BODY).min(step),
+    };
+    bodies.iter().map(least).collect()
 }
 
 /// Returns the largest power of two that does not exceed a number.

@@ -4,7 +4,7 @@
 //! Orientations do not change. A *placement* is a displacement of each body. A *leg* moves some bodies
 //! together along a direction. At the end of a leg another direction must be possible. For two bodies,
 //! `openings` finds where along a first move a second one is possible. `search` explores placements along the
-//! directions of `candidates`.
+//! directions of `candidates`, and later along those of `walls` that stopped bodies.
 //!
 //! The search uses rounded numbers. No removal path depends on them, because a
 //! [`Cast`](colltrans_convex::Cast) of each moving body against each one at rest certifies each leg. The
@@ -19,8 +19,10 @@ mod openings;
 mod options;
 mod pairs;
 mod proof;
+mod scene;
 mod search;
 mod verify;
+mod walls;
 
 pub use answer::{Leg, RemovalPath, RemovalSearch};
 pub use candidates::large_facet_axes;
@@ -28,3 +30,4 @@ pub use cells::{Crossing, DisplacementCell, DisplacementGrid};
 pub use enclosed::NoRemovalPath;
 pub use options::{Order, RemovalOptions, SearchWork};
 pub use proof::LegProof;
+pub use scene::{BlockingPair, PairRelation, RemovalScene};

@@ -29,6 +29,8 @@ pub(super) struct OpeningQuery {
     pub(super) end: f64,
     /// Length of the second move.
     pub(super) far: f64,
+    /// Whether each body has open shells, whose facets block from both sides.
+    pub(super) two_sided: [bool; 2],
 }
 
 impl OpeningQuery {
@@ -68,7 +70,8 @@ impl OpeningQuery {
     fn node_interval(&self, [a, b]: [&NodeBounds; 2]) -> Option<Interval> {
         let [_, e] = self.along;
         let looks_away = |axis: DVec3, spread: f64| spread < 1.0 && axis.dot(e) <= -spread;
-        if looks_away(a.axis, a.spread) || looks_away(-b.axis, b.spread) {
+        let [own, other] = self.two_sided;
+        if !own && looks_away(a.axis, a.spread) || !other && looks_away(-b.axis, b.spread) {
             return None;
         }
         self.difference_interval(b.low - a.high - self.from, b.high - a.low - self.from)
@@ -113,7 +116,12 @@ impl OpeningQuery {
     fn facet_interval(&self, bodies: &Bodies, pair: [u32; 2]) -> Option<Interval> {
         let [d, e] = self.along;
         let normal = |k: usize| bodies.nodes[k][pair[k] as usize].axis;
-        if normal(0).dot(e) <= MIN_FACING || normal(1).dot(e) >= -MIN_FACING {
+        let facing = [normal(0).dot(e), -normal(1).dot(e)];
+        let blocks = |k: usize| {
+            let sine = if self.two_sided[k] { facing[k].abs() } else { facing[k] };
+            sine > MIN_FACING
+        };
+        if !(blocks(0) && blocks(1)) {
             return None;
         }
         let corners = [true, false].map(|moving| {
@@ -247,6 +255,7 @@ mod tests {
             along,
             end,
             far,
+            two_sided: [false; 2],
         };
         let of = |query: &OpeningQuery, low: [f64; 3], high: [f64; 3]| {
             query.difference_interval(DVec3::from(low), DVec3::from(high))

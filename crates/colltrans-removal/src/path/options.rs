@@ -24,6 +24,9 @@ pub struct RemovalOptions {
     /// Limit of node visits of all searches for openings. A search that has been started is finished, so the
     /// limit can be exceeded slightly.
     pub looks: u64,
+    /// Limit of [`SearchWork::total`]. It is checked like [`casts`](Self::casts). A larger limit continues the same
+    /// search, so it finds a path that a smaller one finds, with equal work.
+    pub work: u64,
     /// Maximum number of displacement cells of the search for a proof that two bodies have no removal path; 0
     /// disables this search. Up to each attempt, [`CELLS_PER_PLACEMENT`](Self::CELLS_PER_PLACEMENT) cells are
     /// allowed for each explored placement. When no placement is left or a limit is reached, the full number
@@ -45,6 +48,7 @@ impl Default for RemovalOptions {
             places: 2_000,
             casts: 200_000,
             looks: 50_000_000,
+            work: u64::MAX,
             cells: 20_000,
             step: 0.02,
             directions: Vec::new(),
@@ -56,6 +60,8 @@ impl RemovalOptions {
     /// Number of explored placements after which the first attempt at a proof is made. It doubles for each
     /// later attempt.
     pub const FIRST_PROOF_PLACEMENTS: usize = 25;
+    /// Work after which a search for the fewest legs also follows single groups to places that need many legs.
+    pub const FIRST_FOCUSED_WORK: u64 = 10_000_000;
     /// Number of displacement cells for each explored placement. This balances the work of the search and of
     /// the proof.
     pub const CELLS_PER_PLACEMENT: usize = 20;
@@ -97,6 +103,12 @@ impl RemovalOptions {
         Self { looks, ..self }
     }
 
+    /// Returns the options with a limit of all work.
+    #[must_use]
+    pub fn with_work(self, work: u64) -> Self {
+        Self { work, ..self }
+    }
+
     /// Returns the options with a maximum number of cells for a proof that no path exists; 0 disables this
     /// proof.
     #[must_use]
@@ -126,7 +138,8 @@ impl RemovalOptions {
 )]
 pub enum Order {
     /// Fewest legs first (breadth first). A path through the cells of a proof, which may have more legs, is
-    /// used only if no other path is found.
+    /// used only if no other path is found. After [`SearchWork::total`] has reached
+    /// [`RemovalOptions::FIRST_FOCUSED_WORK`], half of the work goes to placements that one group alone has reached.
     FewestLegs,
     /// Best first: a placement with few legs in a region with few placements.
     NewestFirst,
@@ -137,7 +150,8 @@ pub enum Order {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SearchWork {
-    /// Number of directions that were tried from each placement.
+    /// Number of directions that were tried from each placement: the given ones, and those that the search derived
+    /// from walls that stopped bodies.
     pub directions: usize,
     /// Number of placements that were explored along all directions.
     pub places: usize,
@@ -153,4 +167,14 @@ pub struct SearchWork {
     /// limit of work ended the search. A placement that counts as equal to an earlier one with at most as
     /// many legs is not continued.
     pub complete: bool,
+}
+
+impl SearchWork {
+    /// Number of node visits for which a cast counts in [`total`](Self::total).
+    pub const CAST_WORK: u64 = 500;
+
+    /// Returns the total work: node visits, and 500 for each cast.
+    pub const fn total(&self) -> u64 {
+        self.looks + Self::CAST_WORK * self.casts as u64
+    }
 }

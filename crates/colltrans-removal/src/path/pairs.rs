@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::openings::OpeningQuery;
 use super::options::SearchWork;
+use super::scene::PairRelation;
 use crate::directions::{Bodies, FreeError};
 use colltrans_convex::answer::Clearance;
 use colltrans_convex::body::{Aabb, Placed};
@@ -38,6 +39,8 @@ pub(super) struct BodyPair<'a> {
     pub(super) tolerance: f64,
     /// Overlap in the initial poses, if any. Such bodies move together.
     pub(super) overlap: Option<overlap::Overlap>,
+    /// The free travel in any direction, if the bodies move together (0) or never block each other.
+    constant_travel: Option<f64>,
     /// Built when openings are requested for the first time.
     bodies: Option<Bodies<'a>>,
     /// Minimum length of a move.
@@ -45,40 +48,46 @@ pub(super) struct BodyPair<'a> {
     free_travels: HashMap<TravelKey, f64>,
     /// Facets that were hit, the most recent first.
     hit: Vec<[u32; 2]>,
+    /// Normals of the facets that were hit, in the world frame, until the search takes them.
+    pub(super) hit_normals: Vec<DVec3>,
     blocked: HashMap<OpeningKey, Vec<[f64; 2]>>,
     workspace: Workspace,
 }
 
 impl<'a> BodyPair<'a> {
-    /// Builds the pair of two bodies with their [boxes](bounding_box).
+    /// Builds the pair of two bodies with a relation, and with [boxes](bounding_box) that contain them.
     ///
     /// # Errors
-    /// Returns an error for bodies that a cast rejects, and for open shells.
+    /// Returns an error for bodies that a cast rejects.
     pub(super) fn new(
+        relation: PairRelation<'a>,
         placed: [Placed<'a, Solid>; 2],
         boxes: [Aabb; 2],
-        (tolerance, step): (f64, f64),
+        step: f64,
     ) -> Result<Self, FreeError> {
-        for (which, body) in [("moving", &placed[0]), ("fixed", &placed[1])] {
-            if !body.body.is_closed() {
-                return Err(FreeError::Open { which });
-            }
-        }
-        let cast = initial_cast(placed, tolerance)?;
-        let overlap = if boxes[0].intersects(&boxes[1]) {
+        let (placed, tolerance, constant_travel) = match relation {
+            PairRelation::Ignored => (placed, 0.0, Some(f64::INFINITY)),
+            PairRelation::Joined => (placed, 0.0, Some(0.0)),
+            PairRelation::Blocking(pair) => (pair.searched, pair.search_tolerance, None),
+        };
+        let overlap = if constant_travel.is_none() && boxes[0].intersects(&boxes[1]) {
+            let cast = initial_cast(placed, tolerance)?;
             overlap::find_overlap(&cast.checked_query_scene()?, &mut SolidSteps::default())
         } else {
             None
         };
+        let constant_travel = constant_travel.or(overlap.map(|_| 0.0));
         Ok(Self {
             placed,
             boxes,
             tolerance,
             overlap,
+            constant_travel,
             bodies: None,
             step,
             free_travels: HashMap::new(),
             hit: Vec::new(),
+            hit_normals: Vec::new(),
             blocked: HashMap::new(),
             workspace: Workspace::default(),
         })
@@ -92,8 +101,8 @@ impl<'a> BodyPair<'a> {
         (number, d): (usize, DVec3),
         searched: &mut SearchWork,
     ) -> Result<f64, QueryError> {
-        if self.overlap.is_some() {
-            return Ok(0.0);
+        if let Some(travel) = self.constant_travel {
+            return Ok(travel);
         }
         if !self.boxes_may_meet(by, d) {
             return Ok(f64::INFINITY);
@@ -117,6 +126,8 @@ impl<'a> BodyPair<'a> {
             if let Clearance::Blocked { contact, .. } = &clearance {
                 self.hit.insert(0, contact.triangles);
                 self.hit.truncate(MAX_HIT);
+                let normal = facet_normal(&self.placed, contact.triangles, contact.normal);
+                self.hit_normals.extend(normal);
             }
             travel_of_clearance(&clearance)
         };
@@ -172,7 +183,11 @@ impl<'a> BodyPair<'a> {
         [end, far]: [f64; 2],
         searched: &mut SearchWork,
     ) -> Result<&[[f64; 2]], QueryError> {
-        let query = OpeningQuery { from: by, along, end, far };
+        if self.constant_travel.is_some() {
+            return Ok(&[]);
+        }
+        let two_sided = self.placed.map(|placed| !placed.body.is_closed());
+        let query = OpeningQuery { from: by, along, end, far, two_sided };
         let [a, b] = &self.boxes;
         if query.box_interval([a, b]).is_none() {
             return Ok(&[]);
@@ -202,6 +217,23 @@ impl<'a> BodyPair<'a> {
         let [a, b] = self.placed;
         Ok([a.body.at(displaced_pose(a, by)?), b])
     }
+}
+
+/// Returns the normal, in the world frame, of the facet in contact that is nearest to the normal of the contact.
+/// Returns `None` for facets without area.
+fn facet_normal(
+    placed: &[Placed<'_, Solid>; 2],
+    triangles: [u32; 2],
+    contact: DVec3,
+) -> Option<DVec3> {
+    let normals = [0, 1].map(|k| {
+        let body = placed[k].body;
+        let [a, b, c] =
+            body.triangles()[triangles[k] as usize].map(|v| body.vertices()[v as usize]);
+        placed[k].pose.transform_vector((b - a).cross(c - a)).try_normalize()
+    });
+    let near = |normal: &DVec3| normal.dot(contact).abs();
+    normals.into_iter().flatten().max_by(|a, b| near(a).total_cmp(&near(b)))
 }
 
 fn travel_of_clearance(clearance: &Clearance<Solid>) -> f64 {

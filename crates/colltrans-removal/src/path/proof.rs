@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::answer::{Leg, MAX_BODIES};
 use super::pairs::displaced_cast;
+use super::scene::RemovalScene;
 use super::search::{Group, Move, moving_pairs};
 use crate::directions::FreeError;
 use colltrans_convex::body::Placed;
@@ -55,17 +56,20 @@ pub(super) fn proves_leg(certificate: &SolidCertificate, last: bool) -> bool {
 
 /// Certifies the legs of a plan. Returns `None` if a leg cannot be proven.
 pub(super) fn certified_legs(
-    bodies: &[Placed<'_, Solid>],
+    scene: &RemovalScene<'_>,
     moves: &[Move],
-    tolerance: f64,
 ) -> Result<Option<Vec<Leg>>, FreeError> {
-    let mut at = vec![DVec3::ZERO; bodies.len()];
+    let mut at = vec![DVec3::ZERO; scene.count()];
     let mut legs = Vec::new();
     for (k, &Move { group, motion }) in moves.iter().enumerate() {
         let last = k + 1 == moves.len();
         let mut proofs = Vec::new();
-        for [i, j] in moving_pairs(group, bodies.len()) {
-            let cast = leg_cast([bodies[i], bodies[j]], at[i] - at[j], motion, last, tolerance)?;
+        let Some(pairs) = scene.pairs_to_prove(moving_pairs(group, scene.count())) else {
+            return Ok(None);
+        };
+        for [i, j] in pairs {
+            let Some((bodies, tolerance)) = scene.proven_pair([i, j]) else { continue };
+            let cast = leg_cast(bodies, at[i] - at[j], motion, last, tolerance)?;
             let certificate = cast.certified_clearance()?.1;
             if !proves_leg(&certificate, last) {
                 return Ok(None);

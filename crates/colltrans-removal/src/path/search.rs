@@ -12,6 +12,8 @@
 //! - Two placements are equal if all bodies are in the same cells of a coarse grid and the same moves are
 //!   possible.
 //! - A group does not continue along the line of the leg that it has just made.
+//! - Normals of facets that stop bodies give further directions, along which all explored placements are tried again.
+//! - The order of exploration does not depend on the limits of work, so a larger limit continues the same search.
 
 use std::cmp::Reverse;
 use std::collections::hash_map::DefaultHasher;
@@ -24,6 +26,7 @@ use glam::DVec3;
 use super::openings::{complement, insert_interval};
 use super::options::{Order, RemovalOptions, SearchWork};
 use super::pairs::{BodyPair, bit_key};
+use super::walls::MetWalls;
 use crate::directions::{FreeDirections, FreeError, FreeOptions};
 use colltrans_convex::setting::error::QueryError;
 
@@ -31,11 +34,16 @@ use colltrans_convex::setting::error::QueryError;
 const MAX_FREE_SETS: usize = 64;
 /// Maximum number of node visits of each of these computations.
 const MAX_FREE_VISITS: u64 = 200_000;
+/// Number of explored placements after which directions along walls are added. It doubles each time.
+const FIRST_WALL_PLACEMENTS: usize = 32;
+/// Number of axes that are added each time, and the maximum number of all axes.
+const NEW_AXES: usize = 3;
+const MAX_AXES: usize = 24;
 /// Size of the regions in which placements are counted, in cells of a placement.
 const REGION_SIZE: f64 = 8.0;
 
 /// Set of bodies, one bit for each.
-pub(super) type Group = u64;
+pub(super) type Group = u128;
 
 /// Planned leg: the bodies that move, and the vector. The last leg has a direction and no end.
 #[derive(Debug, Clone, Copy)]
@@ -49,10 +57,8 @@ pub(super) struct Move {
 pub(super) struct SearchScale {
     /// Length that exceeds the size of all bodies together.
     pub(super) far: f64,
-    /// Minimum length of a move.
+    /// Minimum length of a move of the largest body.
     pub(super) step: f64,
-    /// Size of the cells in which placements are equal.
-    pub(super) grain: f64,
     /// Distance from a contact, or from the end of an opening, at which a leg stops.
     pub(super) off: f64,
     /// Power of two of which displacements are multiples.
@@ -65,6 +71,33 @@ struct Placement {
     /// Index of the axis along which it was reached.
     axis: Option<usize>,
     legs: usize,
+    /// The group that made all legs, if it is only one.
+    mover: Option<Group>,
+    progress: Progress,
+}
+
+/// Progress of a placement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Progress {
+    Unexplored,
+    /// Explored: last legs were tried. Placements beyond it are still missing.
+    Explored,
+    /// Explored, and not continued any more.
+    Finished,
+}
+
+/// Entry of a queue: the cost, the placement, and whether placements beyond it are wanted.
+type QueueEntry = Reverse<(usize, usize, bool)>;
+
+/// Which bodies move, and how far at least.
+pub(super) struct BodyRoles {
+    /// Bodies that do not move, including the base.
+    pub(super) fixed: Group,
+    pub(super) base: usize,
+    /// Bodies that the last leg may remove.
+    pub(super) leaving: Group,
+    /// Minimum length of a move of each body. It is also the size of the cells in which placements are equal.
+    pub(super) steps: Vec<f64>,
 }
 
 /// Identity of a placement.
@@ -83,9 +116,7 @@ pub(super) struct Search<'s, 'a> {
     /// Pair of the bodies `i < j` at index `j (j - 1) / 2 + i`.
     pub(super) pairs: Vec<BodyPair<'a>>,
     pub(super) count: usize,
-    /// Bodies that do not move, including the base.
-    pub(super) fixed: Group,
-    pub(super) base: usize,
+    roles: BodyRoles,
     pub(super) directions: Vec<DVec3>,
     pub(super) scale: SearchScale,
     pub(super) options: &'s RemovalOptions,
@@ -93,8 +124,14 @@ pub(super) struct Search<'s, 'a> {
     pub(super) cancel: Option<&'s AtomicBool>,
     pub(super) searched: SearchWork,
     placements: Vec<Placement>,
-    /// Unexplored placements by cost.
-    queue: BinaryHeap<Reverse<(usize, usize)>>,
+    /// Placements by cost.
+    queue: BinaryHeap<QueueEntry>,
+    /// Placements that one group alone has reached, best first, if the other queue has the fewest legs first.
+    focused: BinaryHeap<QueueEntry>,
+    focused_work: u64,
+    walls: MetWalls,
+    /// Number of explored placements at which directions along walls are added next.
+    next_walls: usize,
     /// Explored placements.
     explored: Vec<usize>,
     /// Fewest legs by which placements were reached, by their identity.
@@ -108,33 +145,42 @@ pub(super) struct Search<'s, 'a> {
 impl<'s, 'a> Search<'s, 'a> {
     pub(super) fn new(
         pairs: Vec<BodyPair<'a>>,
-        (count, fixed, base): (usize, Group, usize),
+        roles: BodyRoles,
         directions: Vec<DVec3>,
         scale: SearchScale,
         options: &'s RemovalOptions,
         cancel: Option<&'s AtomicBool>,
     ) -> Self {
+        let count = roles.steps.len();
         let own = if count == 2 { Order::NewestFirst } else { Order::FewestLegs };
         let order = options.order.unwrap_or(own);
         let searched = SearchWork { directions: directions.len(), ..SearchWork::default() };
-        let start = Placement { at: vec![DVec3::ZERO; count], before: None, axis: None, legs: 0 };
-        let (placements, queue, explored) =
-            (vec![start], BinaryHeap::from([Reverse((0, 0))]), Vec::new());
+        let start = Placement {
+            at: vec![DVec3::ZERO; count],
+            before: None,
+            axis: None,
+            legs: 0,
+            mover: None,
+            progress: Progress::Unexplored,
+        };
         let (seen, known, region_counts) = (HashMap::new(), HashMap::new(), HashMap::new());
         Self {
             pairs,
             count,
-            fixed,
-            base,
+            roles,
             directions,
             scale,
             options,
             order,
             cancel,
             searched,
-            placements,
-            queue,
-            explored,
+            placements: vec![start],
+            queue: BinaryHeap::from([Reverse((0, 0, false))]),
+            focused: BinaryHeap::new(),
+            focused_work: 0,
+            walls: MetWalls::default(),
+            next_walls: FIRST_WALL_PLACEMENTS,
+            explored: Vec::new(),
             known,
             seen,
             region_counts,
@@ -148,35 +194,119 @@ impl<'s, 'a> Search<'s, 'a> {
         places: usize,
         mut proven: impl FnMut(&[Move]) -> Result<Option<P>, FreeError>,
     ) -> Result<SearchEnd<P>, FreeError> {
-        while let Some(&Reverse((_, at))) = self.queue.peek() {
+        loop {
             self.check_cancelled()?;
+            let is_empty = self.queue.is_empty() && self.focused.is_empty();
+            if (is_empty || self.searched.places >= self.next_walls)
+                && self.add_directions_of_walls()
+            {
+                continue;
+            }
+            if is_empty {
+                break;
+            }
             if self.is_limit_reached() {
                 return Ok(SearchEnd::Ended);
             }
             if self.searched.places >= places {
                 return Ok(SearchEnd::Paused);
             }
-            self.queue.pop();
-            self.searched.places += 1;
-            let travels = self.free_travels(at)?;
-            for last in self.last_moves(&travels, 0) {
-                if let Some(way) = proven(&self.moves_to(at, last))? {
-                    return Ok(SearchEnd::Found(way));
+            let before = self.searched.total();
+            let is_focused = !self.focused.is_empty()
+                && (self.queue.is_empty()
+                    || self.focused_work + RemovalOptions::FIRST_FOCUSED_WORK
+                        < before - self.focused_work);
+            let queue = if is_focused { &mut self.focused } else { &mut self.queue };
+            let Some(Reverse((_, at, go_on))) = queue.pop() else { continue };
+            if self.placements[at].progress == Progress::Unexplored
+                && let Some(way) = self.explore(at, &mut proven)?
+            {
+                return Ok(SearchEnd::Found(way));
+            }
+            if self.placements[at].progress == Progress::Explored {
+                if go_on || is_focused || self.order == Order::NewestFirst {
+                    self.continue_from(at)?;
+                } else {
+                    // Placements beyond this one cost one leg more, so others of its cost are explored first.
+                    self.queue.push(Reverse((2 * self.placements[at].legs + 1, at, true)));
                 }
             }
-            self.explored.push(at);
-            let goes_on = self.placements[at].legs + 2 <= self.options.legs;
-            let (key, legs) = (self.placement_key(at, &travels), self.placements[at].legs);
-            if goes_on && is_improvement(&mut self.known, key, legs) {
-                let new = self.new_placements(at, &travels)?;
-                for place in new {
-                    let cost = self.exploration_cost(place);
-                    self.queue.push(Reverse((cost, place)));
-                }
+            if is_focused {
+                self.focused_work += self.searched.total() - before;
             }
         }
         self.searched.complete = !self.is_limit_reached();
         Ok(SearchEnd::Ended)
+    }
+
+    /// Tries last legs at a placement. Returns the first one that `proven` accepts.
+    fn explore<P>(
+        &mut self,
+        at: usize,
+        proven: &mut impl FnMut(&[Move]) -> Result<Option<P>, FreeError>,
+    ) -> Result<Option<P>, FreeError> {
+        self.searched.places += 1;
+        let travels = self.free_travels(at)?;
+        for last in self.last_moves(&travels, 0) {
+            if let Some(way) = proven(&self.moves_to(at, last))? {
+                return Ok(Some(way));
+            }
+        }
+        self.explored.push(at);
+        let legs = self.placements[at].legs;
+        let key = self.placement_key(at, &travels);
+        let goes_on = legs + 2 <= self.options.legs && is_improvement(&mut self.known, key, legs);
+        self.placements[at].progress =
+            if goes_on { Progress::Explored } else { Progress::Finished };
+        Ok(None)
+    }
+
+    /// Adds the placements beyond an explored one to the queues.
+    fn continue_from(&mut self, at: usize) -> Result<(), FreeError> {
+        let travels = self.free_travels(at)?;
+        for place in self.new_placements(at, &travels)? {
+            self.enqueue(place);
+        }
+        self.placements[at].progress = Progress::Finished;
+        Ok(())
+    }
+
+    fn enqueue(&mut self, place: usize) {
+        if self.order == Order::NewestFirst {
+            let cost = self.best_first_cost(place);
+            self.queue.push(Reverse((cost, place, false)));
+            return;
+        }
+        self.queue.push(Reverse((2 * self.placements[place].legs, place, false)));
+        if self.placements[place].mover.is_some() {
+            let cost = self.best_first_cost(place);
+            self.focused.push(Reverse((cost, place, true)));
+        }
+    }
+
+    /// Adds directions along the walls that have stopped bodies. Returns whether there are new ones. All explored
+    /// placements are then explored again.
+    fn add_directions_of_walls(&mut self) -> bool {
+        while self.next_walls <= self.searched.places {
+            self.next_walls *= 2;
+        }
+        let axes = self.directions.len() / 2;
+        let new =
+            self.walls.new_axes(&self.directions, NEW_AXES.min(MAX_AXES.saturating_sub(axes)));
+        if new.is_empty() {
+            return false;
+        }
+        self.directions.extend(new.into_iter().flat_map(|axis| [axis, DVec3::ZERO - axis]));
+        self.searched.directions = self.directions.len();
+        self.explored.clear();
+        for place in 0..self.placements.len() {
+            let placement = &mut self.placements[place];
+            if placement.progress != Progress::Unexplored {
+                placement.progress = Progress::Unexplored;
+                self.enqueue(place);
+            }
+        }
+        true
     }
 
     /// Searches for a last leg along any free direction at an explored placement. Returns `None` if `proven`
@@ -259,19 +389,23 @@ impl<'s, 'a> Search<'s, 'a> {
         searched.looks >= most.looks
             || searched.casts >= most.casts
             || searched.places >= most.places
+            || searched.total() >= most.work
     }
 
-    /// Returns the cost of a placement. The smallest cost is explored first.
-    fn exploration_cost(&mut self, place: usize) -> usize {
-        let legs = self.placements[place].legs;
-        if self.order == Order::FewestLegs {
-            return legs;
-        }
-        let cell = |v: &DVec3| bit_key((*v / (REGION_SIZE * self.scale.grain)).round());
-        let region = self.placements[place].at.iter().map(cell).collect();
+    /// Returns the cost of a placement in a best-first search. The smallest cost is explored first.
+    fn best_first_cost(&mut self, place: usize) -> usize {
+        let Placement { at, legs, .. } = &self.placements[place];
+        let region = self.body_cells(at, REGION_SIZE);
+        let legs = *legs;
         let region_count = self.region_counts.entry(region).or_default();
         *region_count += 1;
         legs + 2 * (*region_count - 1)
+    }
+
+    /// Returns the cell of each body. Cells have this multiple of the minimum length of a move.
+    fn body_cells(&self, at: &[DVec3], size: f64) -> Vec<[u64; 3]> {
+        let cell = |(v, step): (&DVec3, &f64)| bit_key((*v / (size * step)).round());
+        at.iter().zip(&self.roles.steps).map(cell).collect()
     }
 
     /// Returns for each direction a matrix of free travels. The entry `i * count + j` is the free travel of
@@ -298,6 +432,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 let by = self.placements[place].at[i] - self.placements[place].at[j];
                 let pair = &mut self.pairs[j * (j - 1) / 2 + i];
                 let travel = pair.free_travel(by, d, &mut self.searched)?;
+                pair.hit_normals.drain(..).for_each(|normal| self.walls.add(normal));
                 travels[k][i * count + j] = travel;
                 travels[k ^ 1][j * count + i] = travel;
             }
@@ -305,25 +440,31 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(())
     }
 
-    /// Returns the distinct groups that move along a direction if the bodies that they hit before `end` join
-    /// them. A group with the base is replaced by the other bodies, with the flag set for the opposite
-    /// motion. Groups with fixed bodies are omitted.
-    fn moving_groups(&self, travels: &[f64], end: f64) -> Vec<(Group, bool)> {
+    /// Returns the distinct groups that move along a direction if the bodies that they hit join them: before the
+    /// minimum length of a move of the body that hits, or at any distance with `ever`. A group with the base is
+    /// replaced by the other bodies, with the flag set for the opposite motion. Groups with fixed bodies are omitted.
+    fn moving_groups(&self, travels: &[f64], ever: bool) -> Vec<(Group, bool)> {
         let mut found = Vec::new();
         let all = Group::MAX >> (Group::BITS as usize - self.count);
+        let hit_by = |i: usize| {
+            let end = if ever { f64::INFINITY } else { self.roles.steps[i] };
+            let row = &travels[i * self.count..(i + 1) * self.count];
+            let hit = |(j, travel): (usize, &f64)| Group::from(j != i && *travel < end) << j;
+            row.iter().enumerate().fold(0, |mask, entry| mask | hit(entry))
+        };
+        let hits: Vec<Group> = (0..self.count).map(hit_by).collect();
         for first in 0..self.count {
-            let (mut group, mut stack): (Group, _) = (1 << first, vec![first]);
-            while let Some(i) = stack.pop() {
-                for j in 0..self.count {
-                    if group >> j & 1 == 0 && travels[i * self.count + j] < end {
-                        group |= 1 << j;
-                        stack.push(j);
-                    }
-                }
+            let (mut group, mut new): (Group, Group) = (1 << first, 1 << first);
+            while new != 0 {
+                let i = new.trailing_zeros() as usize;
+                let joining = hits[i] & !group;
+                group |= joining;
+                new = (new & (new - 1)) | joining;
             }
-            let reversed = group >> self.base & 1 == 1;
+            let reversed = group >> self.roles.base & 1 == 1;
             let moving = if reversed { all & !group } else { group };
-            if moving != 0 && moving & self.fixed == 0 && !found.contains(&(moving, reversed)) {
+            if moving != 0 && moving & self.roles.fixed == 0 && !found.contains(&(moving, reversed))
+            {
                 found.push((moving, reversed));
             }
         }
@@ -335,7 +476,8 @@ impl<'s, 'a> Search<'s, 'a> {
     fn last_moves(&self, travels: &[Vec<f64>], from: usize) -> Vec<Move> {
         let mut found = Vec::new();
         for (k, d) in self.directions.iter().enumerate().skip(from) {
-            for (group, reversed) in self.moving_groups(&travels[k], f64::INFINITY) {
+            let groups = self.moving_groups(&travels[k], true).into_iter();
+            for (group, reversed) in groups.filter(|(group, _)| group & !self.roles.leaving == 0) {
                 found.push(Move { group, motion: if reversed { DVec3::ZERO - *d } else { *d } });
             }
         }
@@ -349,7 +491,7 @@ impl<'s, 'a> Search<'s, 'a> {
     fn last_moves_in_free_directions(&mut self, place: usize) -> Result<Vec<Move>, FreeError> {
         let (count, known) = (self.count, self.directions.len());
         let mut askew = Vec::new();
-        for i in (0..count).filter(|i| self.fixed >> i & 1 == 0) {
+        for i in (0..count).filter(|i| self.roles.fixed >> i & 1 == 0) {
             let mut least: Option<(f64, Vec<DVec3>)> = None;
             for j in (0..count).filter(|&j| j != i) {
                 self.check_cancelled()?;
@@ -397,7 +539,7 @@ impl<'s, 'a> Search<'s, 'a> {
         let mut new = Vec::new();
         let came = self.placements[place].before.map(|(_, step)| step.group);
         for k in 0..self.directions.len() {
-            for (group, reversed) in self.moving_groups(&travels[k], self.scale.step) {
+            for (group, reversed) in self.moving_groups(&travels[k], false) {
                 if came == Some(group) && self.placements[place].axis == Some(k / 2) {
                     continue;
                 }
@@ -408,7 +550,11 @@ impl<'s, 'a> Search<'s, 'a> {
                 let pairs = self.moving_pairs(group);
                 let travel = |&[i, j]: &[usize; 2]| travels[along][i * self.count + j];
                 let travel = pairs.iter().map(travel).fold(self.scale.far, f64::min);
-                for t in self.stop_positions(place, &pairs, along, travel)? {
+                let step = (0..self.count)
+                    .filter(|k| group >> k & 1 == 1)
+                    .map(|k| self.roles.steps[k])
+                    .fold(self.scale.step, f64::min);
+                for t in self.stop_positions(place, &pairs, along, [travel, step])? {
                     new.extend(self.placement_after(place, group, (along, t)));
                 }
             }
@@ -421,15 +567,16 @@ impl<'s, 'a> Search<'s, 'a> {
         moving_pairs(group, self.count)
     }
 
-    /// Returns the positions at which a group with free travel `travel` along a direction may stop.
+    /// Returns the positions at which a group with free travel `travel` along a direction may stop. `step` is the
+    /// minimum length of a move of the group.
     fn stop_positions(
         &mut self,
         place: usize,
         pairs: &[[usize; 2]],
         d: usize,
-        travel: f64,
+        [travel, step]: [f64; 2],
     ) -> Result<Vec<f64>, QueryError> {
-        let SearchScale { far, step, off, .. } = self.scale;
+        let SearchScale { far, off, .. } = self.scale;
         let mut stops = Vec::new();
         for e in 0..self.directions.len() {
             if e / 2 == d / 2 {
@@ -495,8 +642,11 @@ impl<'s, 'a> Search<'s, 'a> {
         if motion == DVec3::ZERO || !is_improvement(&mut self.seen, key, legs) {
             return None;
         }
+        let Placement { before, mover, .. } = &self.placements[place];
+        let mover = if before.is_none() { Some(group) } else { mover.filter(|own| *own == group) };
         let before = Some((place, Move { group, motion }));
-        self.placements.push(Placement { at, before, axis: Some(d / 2), legs });
+        let (axis, progress) = (Some(d / 2), Progress::Unexplored);
+        self.placements.push(Placement { at, before, axis, legs, mover, progress });
         Some(self.placements.len() - 1)
     }
 
@@ -504,12 +654,12 @@ impl<'s, 'a> Search<'s, 'a> {
     fn placement_key(&self, place: usize, travels: &[Vec<f64>]) -> PlacementKey {
         let mut ways = DefaultHasher::new();
         for travels in travels {
-            for travel in travels {
-                (*travel >= self.scale.step).hash(&mut ways);
+            for (k, travel) in travels.iter().enumerate() {
+                let step = self.roles.steps[k / self.count];
+                (*travel >= step).hash(&mut ways);
             }
         }
-        let cell = |v: &DVec3| bit_key((*v / self.scale.grain).round());
-        (self.placements[place].at.iter().map(cell).collect(), ways.finish())
+        (self.body_cells(&self.placements[place].at, 1.0), ways.finish())
     }
 
     /// Returns the moves to a placement, followed by the last one.

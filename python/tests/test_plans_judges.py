@@ -215,7 +215,7 @@ def test_the_collection(cli: Path, name: str) -> None:
     folder = COLLECTION / name
     if not folder.is_dir():
         pytest.skip("it is not there")
-    told, judge = judged(cli, folder, "--legs", "12")
+    told, judge = judged(cli, folder)
     assert told["plan"] and judge.looks > 0
 
 

@@ -6,6 +6,7 @@
 //! - A pair with a tolerance of its own, or with a screw that is replaced by its core, has bodies of its own
 //!   ([`roles`](crate::roles)). They serve only queries of this pair.
 
+mod paths;
 mod turning;
 
 use std::collections::BTreeMap;
@@ -383,13 +384,6 @@ impl<'a> Bodies<'a> {
     /// Returns the general fit.
     pub const fn fit(&self) -> Fit {
         self.fit
-    }
-
-    /// Returns twice the smallest distance by which the general fit shrinks one of these parts. No pair of
-    /// them has a smaller tolerance by that fit.
-    pub(crate) fn least_fit_tolerance(&self, parts: &[usize]) -> f64 {
-        let distance = |&k: &usize| self.fit.shrink_distance(&self.assembly.parts()[k]);
-        2.0 * parts.iter().map(distance).reduce(f64::min).unwrap_or(0.0)
     }
 
     /// Returns the number of parts.

@@ -6,6 +6,7 @@
 //! - [`hints`], [`liaisons`] (contacts), [`candidates`] (directions, also of [`cylinders`] and [`inertia`])
 //! - [`matrix`], [`travel`] (blockers and free travel) -> [`blocking`] (graph, [`constraints`]) -> [`plan`] ([`identical`]),
 //!   [`map`]
+//! - [`attempts`]: options to try if parts stay together
 //! - [`audit`]: pairs that interfere or are too near, without a plan
 //! - [`record`] (JSON) and [`report`] (pictures, HTML, animation; feature `report`)
 //!
@@ -25,6 +26,7 @@ mod witness;
 #[cfg(test)]
 mod work;
 
+pub mod attempts;
 pub mod audit;
 pub mod blocking;
 pub mod candidates;

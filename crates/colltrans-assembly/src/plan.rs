@@ -8,6 +8,7 @@
 //!
 //! If no direction of the matrix removes a group, these are tried in turn: finer candidates, samples of the sphere,
 //! samples refined for movable parts, a proof over the sphere, paths of several moves, and a turn followed by a move.
+//! The last two deepen until the [effort](PlanOptions::effort) is used.
 //! Every step is replayed against the remaining parts before it is reported (module `replay`). The exception is a turn
 //! followed by a move, which its own search proves (module `bayonet`).
 
@@ -56,8 +57,8 @@ use crate::witness::Memory;
 
 use bayonet::Bayonet;
 pub use interlock::BlockingSets;
-use multi_move::MovePath;
 pub use multi_move::PathSearch;
+use multi_move::{MovePath, PathParts};
 pub use options::PlanOptions;
 use order::{GroupChoice, Order};
 pub use precedence::precedence_graph;
@@ -164,8 +165,10 @@ struct Planner<'a> {
     has_surfaces: bool,
     /// The selected parts to remove; empty to remove all.
     wanted: &'a [usize],
-    /// The parts that may move, if the plan is limited to some.
+    /// The parts that may leave, if the plan is limited to some. Only these move, ...
     movable: Option<&'a [usize]>,
+    /// ... unless others may move aside and return.
+    makes_room: bool,
 }
 
 /// Maximum number of box pairs visited for the free directions of a group with a known removal direction.
@@ -264,6 +267,7 @@ impl<'a> Planner<'a> {
             has_surfaces,
             wanted,
             movable,
+            makes_room: false,
         })
     }
 
@@ -347,7 +351,7 @@ impl<'a> Planner<'a> {
             }
             let mut moves = None;
             if removal.is_none() {
-                (removal, moves) = self.search_path(&order, &left, among)?;
+                (removal, moves) = self.search_path(&order, &left, among, movable)?;
             }
             if removal.is_none() {
                 let found =
@@ -404,16 +408,25 @@ impl<'a> Planner<'a> {
         });
         let ignored = ignored.collect();
         let passed = ToleratedContact::tolerated_contacts(self.bodies, &parts, present);
-        let surfaces = self.surfaces_ahead(&parts, left, direction);
+        let mut surfaces = self.surfaces_ahead(&parts, left, direction);
+        for leg in moves.iter().flat_map(|moves| &moves.legs) {
+            surfaces.extend(self.surfaces_ahead(&leg.parts, left, leg.direction));
+        }
+        surfaces.sort_unstable();
+        surfaces.dedup();
         let several = moves.is_some() || bayonet.is_some();
         let after = self.preceding_steps(&parts, direction, several, matrix, removed);
         removed.step_of_part.extend(parts.iter().map(|&part| (part, at)));
         let (mut path, back) =
             moves.map_or_else(Default::default, |moves| (moves.legs, moves.return_legs));
+        if let Some(turned) = self.unscrewed_first_leg(&path, &parts, left) {
+            path.splice(0..1, turned);
+        }
         path.extend(bayonet.map(|(turn, _)| turn));
         let along = (&parts[..], direction);
-        let unscrewed =
-            || unscrewing::unscrewing_legs(self.bodies, along, (left, present), travel, start);
+        let unscrewed = || {
+            unscrewing::unscrewing_legs(self.bodies, along, (left, present), (travel, true), start)
+        };
         match path.is_empty().then(unscrewed).flatten() {
             Some((legs, rest)) => {
                 path.extend(legs);
@@ -445,6 +458,23 @@ impl<'a> Planner<'a> {
             self.take_apart(&parts, matrix, Some(at))?;
         }
         Ok(())
+    }
+
+    /// Returns the two legs that replace the first one of a path by a turn and a straight move, if it unscrews the
+    /// parts that the path removes. `left` are the parts that remain.
+    fn unscrewed_first_leg(
+        &self,
+        path: &[Leg],
+        parts: &[usize],
+        left: &[usize],
+    ) -> Option<[Leg; 2]> {
+        let first = path.first().filter(|leg| leg.parts == parts)?;
+        let Leg { direction, travel: length, .. } = *first;
+        let travel = Bounded { value: length, lower: length, upper: length };
+        let (along, mask) = ((parts, direction), self.bodies.part_mask(left));
+        let (present, start) = ((left, &mask[..]), self.options.start);
+        let legs = unscrewing::unscrewing_legs(self.bodies, along, present, (travel, false), start);
+        legs.map(|(legs, _)| legs)
     }
 
     /// Checks whether all selected parts are removed.
@@ -705,39 +735,39 @@ impl<'a> Planner<'a> {
         Ok(around.max_by(|a, b| near(a).total_cmp(&near(b))))
     }
 
-    /// Searches for a removal path of several moves. Returns the path, or else the outcome of the search.
+    /// Searches for a removal path of several moves. Returns the path, or else the outcome of the search. `movable`
+    /// are the parts that may leave, if not all may.
     fn search_path(
         &self,
         order: &Order,
         left: &[usize],
         matrix: &ContactMatrix,
+        movable: Option<&[usize]>,
     ) -> Result<(Option<GroupRemoval>, Option<PathSearch>), AssemblyError> {
         if left.iter().all(|&k| self.is_fixed(k)) {
             return Ok((None, None));
         }
-        let is_stationary = |part: usize| order.is_stationary(part);
-        let among = (left, matrix);
-        Ok(
-            match multi_move::search_path(
-                self.bodies,
-                among,
-                is_stationary,
-                self.options,
-                self.watch,
-            )? {
-                Ok(path) => {
-                    let (parts, direction) = (path.parts.clone(), path.direction);
-                    (
-                        Some(GroupRemoval {
-                            path: Some(path),
-                            ..GroupRemoval::straight(parts, direction)
-                        }),
-                        None,
-                    )
-                }
-                Err(moves) => (None, Some(moves)),
-            },
-        )
+        let makes_room = self.makes_room && movable.is_some();
+        let stays = |part: &usize| {
+            if makes_room { self.is_fixed(*part) } else { order.is_stationary(*part) }
+        };
+        let mut stationary: Vec<usize> = left.iter().copied().filter(stays).collect();
+        if stationary.is_empty() {
+            let volume = |part: &usize| self.bodies.bounds(*part).side_lengths().element_product();
+            let others = left.iter().filter(|part| movable.is_none_or(|own| !own.contains(part)));
+            stationary.extend(others.max_by(|a, b| volume(a).total_cmp(&volume(b))));
+        }
+        let leaving = if makes_room { movable.unwrap_or_default() } else { &[] };
+        let among = PathParts { left, stationary, leaving };
+        let found = multi_move::search_path(self.bodies, &among, matrix, self.options, self.watch)?;
+        Ok(match found {
+            Ok(path) => {
+                let (parts, direction) = (path.parts.clone(), path.direction);
+                let removal = GroupRemoval::straight(parts, direction);
+                (Some(GroupRemoval { path: Some(path), ..removal }), None)
+            }
+            Err(moves) => (None, Some(moves)),
+        })
     }
 
     fn explain_stuck(

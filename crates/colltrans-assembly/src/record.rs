@@ -285,8 +285,8 @@ fn moves_json(moves: &PathSearch) -> Value {
         PathSearch::NotSearched(why) => json!({ "not_asked": why }),
         PathSearch::ConstraintsViolated => json!({ "not_kept": true }),
         PathSearch::Proven { cells } => json!({ "proven": cells }),
-        PathSearch::NotFound { legs, searched } => json!({
-            "legs": legs,
+        PathSearch::NotFound { effort, searched } => json!({
+            "effort": effort,
             "directions": searched.directions,
             "places": searched.places,
             "complete": searched.complete,

@@ -139,9 +139,8 @@ fn plan_question(
     let options = PlanOptions::default()
         .with_start(start_overlap(arguments))
         .with_samples(samples)
-        .with_max_moves(arguments.legs)
-        .with_proofs(!arguments.no_proofs && !arguments.only)
-        .with_looks(arguments.work.max_looks());
+        .with_effort(arguments.effort)
+        .with_proofs(!arguments.no_proofs && !arguments.only);
     let question = AnalysisRequest::default()
         .with_choice(choice)
         .with_finer(sampled.to_vec())

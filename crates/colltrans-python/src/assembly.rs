@@ -504,7 +504,7 @@ impl Assembly {
         py: Python<'_>,
         directions: &Bound<'_, PyAny>,
         samples: usize,
-        legs: usize,
+        effort: u32,
         proofs: bool,
         tolerance: Option<f64>,
         ignore_overlaps: bool,
@@ -519,7 +519,7 @@ impl Assembly {
         let options = PlanOptions::default()
             .with_start(choices.start)
             .with_samples(samples)
-            .with_max_moves(legs)
+            .with_effort(effort)
             .with_proofs(proofs);
         let question = AnalysisRequest::default()
             .with_choice(choose_directions(&given).or_raise()?)

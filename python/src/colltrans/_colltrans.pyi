@@ -234,7 +234,7 @@ class Assembly:
         self,
         directions: ArrayLike,
         samples: int,
-        legs: int,
+        effort: int,
         proofs: bool,
         tolerance: float | None,
         ignore_overlaps: bool,

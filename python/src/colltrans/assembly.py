@@ -856,7 +856,7 @@ class Assembly:
         directions: ArrayLike = (),
         *,
         samples: int = 162,
-        legs: int = 2,
+        effort: int = 3,
         proofs: bool = True,
         tolerance: float | None = None,
         ignore_overlaps: bool = False,
@@ -877,9 +877,10 @@ class Assembly:
             Directions to try. The default is the directions from contacts and axes of the parts.
         samples : int
             Number of sampled directions for parts that no other direction moves; 0 for none.
-        legs : int
-            The maximum number of moves that may take out what a single move does not. Other parts
-            may make room and return. 1 for single moves only.
+        effort : int
+            The work of each search for several moves, or a turn, that take out what a single move does
+            not. Other parts may make room and return. A larger effort continues the same search. 0 for
+            single moves only.
         proofs : bool
             Whether to prove for stuck parts that no translation of a group as one, in any
             direction, separates it from the others.
@@ -913,7 +914,7 @@ class Assembly:
         if auto:
             asked: dict[str, Any] = {
                 "samples": samples,
-                "legs": legs,
+                "effort": effort,
                 "proofs": proofs,
                 "tolerance": tolerance,
                 "ignore_overlaps": ignore_overlaps,
@@ -931,7 +932,7 @@ class Assembly:
         plan = self._assembly.plan(
             directions,
             samples,
-            legs,
+            effort,
             proofs,
             tolerance,
             ignore_overlaps,

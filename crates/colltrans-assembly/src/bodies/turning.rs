@@ -44,15 +44,16 @@ impl Bodies<'_> {
         thread.seat([a, b].map(|part| self.assembly().parts()[part].solid()))
     }
 
-    /// Moves the first part along a motion, and then along `d`, against the second one. With a tolerance, uses
-    /// the solids of the files, each shrunk by half of the tolerance. Without one, uses the bodies of this pair.
+    /// Moves the first part along a motion, and then along `d`, by `end` or forever, against the second one. With a
+    /// tolerance, uses the solids of the files, each shrunk by half of the tolerance. Without one, uses the bodies of
+    /// this pair.
     ///
     /// # Errors
     /// The motion, the direction or the tolerance is out of range.
     pub(crate) fn screw_outcome(
         &self,
         pair: [usize; 2],
-        (motion, d): (&Motion, DVec3),
+        (motion, d, end): (&Motion, DVec3, Option<f64>),
         tolerance: Option<f64>,
     ) -> Result<ScrewOutcome, QueryError> {
         let [moving, fixed] = self.queried_solids(pair, tolerance);
@@ -82,7 +83,11 @@ impl Bodies<'_> {
                 return Ok(ScrewOutcome::Blocked(share));
             }
         }
-        let beyond = self.cast_after_turning(pair, (motion, d), tolerance, 1.0)?;
+        let mut beyond = self.cast_after_turning(pair, (motion, d), tolerance, 1.0)?;
+        if end.is_some() {
+            let options = beyond.options().with_before(end);
+            beyond = beyond.with_options(options)?;
+        }
         let goes_on = matches!(beyond.clearance()?, Clearance::Free(_));
         Ok(if goes_on { ScrewOutcome::Free(pairs) } else { ScrewOutcome::Blocked(1.0) })
     }

@@ -21,11 +21,11 @@ use crate::threads::is_rotationally_symmetric;
 use crate::watch::Watch;
 use crate::{cylinders, inertia};
 
-/// Maximum number of parts of a group that is searched, and of axes of each part.
-const MAX_PARTS: usize = 24;
+/// Maximum number of axes of each part.
 const MAX_AXES: usize = 3;
-/// Maximum number of visited pairs for a group, and the number of pairs for which a cast counts.
-const MAX_WORK: u64 = 1_000_000;
+/// Divisor of the work of a search for moves. The result is the maximum number of visited pairs for a group.
+const SHARE: u64 = 20;
+/// Number of pairs for which a cast counts.
 const CAST_WORK: u64 = 500;
 /// Number of evenly spaced angles for a full turn, their minimum number, and the number of angles that halve the
 /// distance to the first contact.
@@ -54,7 +54,8 @@ pub(super) fn search_bayonet(
     options: PlanOptions,
     watch: Watch,
 ) -> Result<Option<Bayonet>, AssemblyError> {
-    if options.max_moves < 2 || left.len() > MAX_PARTS || bodies.fit().tolerance() < 0.0 {
+    let max_work = options.work() / SHARE;
+    if max_work == 0 || bodies.fit().tolerance() < 0.0 {
         return Ok(None);
     }
     let work = Cell::new(0);
@@ -75,7 +76,7 @@ pub(super) fn search_bayonet(
                     continue;
                 }
                 for sense in [1.0, -1.0] {
-                    if work.get() > MAX_WORK {
+                    if work.get() > max_work {
                         return Ok(None);
                     }
                     if let Some(found) = about.removal_after_turn([point, d], sense) {
@@ -147,7 +148,7 @@ impl TurningPart<'_> {
         let near = (7..=HALVES + 6).map(|k| stop * (1.0 - 0.5_f64.powi(k)));
         let mut angles: Vec<f64> = even.chain(near).collect();
         angles.sort_by(f64::total_cmp);
-        if self.work.get() > MAX_WORK {
+        if self.work.get() > self.options.work() / SHARE {
             return None;
         }
         let free: Vec<bool> =
@@ -214,7 +215,7 @@ impl TurningPart<'_> {
             if self.is_ignored(other) || !self.bodies.may_meet_turning(pair, about) {
                 continue;
             }
-            match self.bodies.screw_outcome(pair, (&motion, direction), None) {
+            match self.bodies.screw_outcome(pair, (&motion, direction, None), None) {
                 Ok(ScrewOutcome::Free(looks)) => pairs += looks,
                 _ => return None,
             }

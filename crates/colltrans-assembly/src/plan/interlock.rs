@@ -140,14 +140,14 @@ impl Interlocked {
         let (heading, evidence) = match self.proof_cells {
             Some(cells) => (
                 if self.overlapping_pairs.is_empty() {
-                    "stuck: no group leaves along any direction, proven"
+                    "stuck: proven for each single translation of a group as one"
                 } else {
-                    "stuck: no group leaves along any direction, proven with what overlaps as one"
+                    "stuck: proven for each single translation of a group as one, with what overlaps as one"
                 },
                 format!("This is proven in {cells} cells of the sphere of directions."),
             ),
             None => (
-                "stuck: no group leaves along the directions asked",
+                "stuck: no single translation found, not proven",
                 "Other directions were not tried.".into(),
             ),
         };
@@ -267,7 +267,7 @@ impl PathSearch {
     fn describe(&self) -> String {
         match self {
             Self::NotSearched(why) => {
-                format!("Several moves, one after another, were not looked for: {why}.")
+                format!("Several moves, one after another, were not searched: {why}.")
             }
             Self::ConstraintsViolated => {
                 "The paths of several moves that were found violate constraints on order and directions."
@@ -276,16 +276,15 @@ impl PathSearch {
             Self::Proven { cells } => format!(
                 "Nor do several straight moves, one after another, which is proven in {cells} cells of displacements."
             ),
-            Self::NotFound { legs, searched } => {
+            Self::NotFound { effort, searched } => {
                 let places = match searched.places {
                     1 => "1 place".into(),
                     places => format!("{places} places"),
                 };
-                let end =
-                    if searched.complete { "" } else { ", where the limit of work was reached" };
+                let end = if searched.complete { "; no more places were found" } else { "" };
                 format!(
-                    "Up to {legs} moves, one after another, were not found either, searched from {places} along {} \
-                     directions{end}.",
+                    "Several moves, one after another: not found with effort {effort}, from {places} along {} \
+                     directions{end}. This is not proven.",
                     searched.directions
                 )
             }

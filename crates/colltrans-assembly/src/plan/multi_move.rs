@@ -6,13 +6,14 @@
 //! their initial poses after each step, and one matrix serves every state of a plan. This loses no solution: any
 //! motion that is possible among other parts is also possible without them.
 //!
-//! The search moves any group against the others. If that group contains the base, the plan moves the *complement*,
-//! all other parts, in the opposite direction. The relative motions are equal, so the proofs hold.
+//! Stationary parts never move: instead of a group that contains one, the search moves all other parts in the opposite
+//! direction. Roles, tolerances of pairs, ignored overlaps and open surfaces are relations of pairs
+//! ([`Bodies::path_relation`]). The search deepens by itself until its [work](PlanOptions::effort) is used.
 
 use colltrans::removal::path::{
-    self, RemovalOptions, RemovalPath, RemovalSearch, SearchWork, large_facet_axes,
+    RemovalOptions, RemovalPath, RemovalScene, RemovalSearch, SearchWork, large_facet_axes,
 };
-use colltrans::{Placed, Pose, Solid, removal::directions::FreeError, solid::StartOverlap};
+use colltrans::{Placed, Pose, Solid, removal::directions::FreeError};
 use glam::DVec3;
 
 use super::{Leg, PlanOptions};
@@ -20,7 +21,7 @@ use crate::blocking::BlockingGraph;
 use crate::bodies::Bodies;
 use crate::constraints::Constraints;
 use crate::error::AssemblyError;
-use crate::matrix::ContactMatrix;
+use crate::matrix::{ContactMatrix, PairContact};
 use crate::watch::Watch;
 
 /// Maximum number of axes that are tried.
@@ -28,13 +29,15 @@ const MAX_AXES: usize = 13;
 /// Maximum number of repeated searches after a path violates the constraints. The violating parts are fixed in each
 /// repetition.
 const MAX_TRIES: usize = 3;
-/// Maximum number of parts of a group that is searched.
-const MAX_PARTS: usize = 24;
-/// Number of casts for each leg, and the divisor of the work limit for each leg.
-const CASTS: usize = 500;
-const SHARE: u64 = 40;
+/// Maximum number of parts of a group that is searched, the limit of [`RemovalScene::search`].
+const MAX_PARTS: usize = 127;
+/// Maximum number of legs of a path. The work ends a search before.
+const MAX_LEGS: usize = 64;
 /// Two axes are equal if their cross product is shorter than this.
 const PARALLEL: f64 = 1e-6;
+
+/// Reason for no search with effort 0.
+const EFFORT_IS_ZERO: &str = "the effort is 0";
 
 /// Outcome of the search for removal paths of several moves.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,15 +50,20 @@ pub enum PathSearch {
         /// Number of cells of displacements in the proof.
         cells: usize,
     },
-    /// No path of up to `legs` moves was found. This does not prove that there is none.
+    /// No path was found with this effort. This does not prove that there is none.
     NotFound {
-        /// Maximum number of moves, including the last one.
-        legs: usize,
+        /// The [effort](PlanOptions::effort).
+        effort: u32,
         /// Extent of the search.
         searched: SearchWork,
     },
     /// The paths that were found violate the order or direction constraints.
     ConstraintsViolated,
+}
+
+impl PathSearch {
+    /// No search, because the effort is 0.
+    pub const EFFORT_ZERO: Self = Self::NotSearched(EFFORT_IS_ZERO);
 }
 
 /// A removal path: the legs before the last one, and the direction of the last one.
@@ -71,49 +79,65 @@ pub(super) struct MovePath {
     pub(super) direction: DVec3,
 }
 
+/// The parts among which a path is searched.
+pub(super) struct PathParts<'a> {
+    /// The remaining parts.
+    pub(super) left: &'a [usize],
+    /// The parts of `left` that do not move.
+    pub(super) stationary: Vec<usize>,
+    /// The parts that may leave; all if there are none. Others may move aside and return.
+    pub(super) leaving: &'a [usize],
+}
+
 /// Searches for a path that removes some of the remaining parts.
 ///
 /// Returns the path, or else the outcome of the search. For two parts the search may prove that no path exists,
-/// unless proofs are disabled. Parts for which `is_stationary` holds do not move, except against each other.
+/// unless proofs are disabled.
 pub(super) fn search_path(
     bodies: &Bodies,
-    (left, matrix): (&[usize], &ContactMatrix),
-    is_stationary: impl Fn(usize) -> bool,
+    among: &PathParts,
+    matrix: &ContactMatrix,
     options: PlanOptions,
     watch: Watch,
 ) -> Result<Result<MovePath, PathSearch>, AssemblyError> {
+    let left = among.left;
     if let Some(why) = unsupported_reason(bodies, left, options) {
         return Ok(Err(PathSearch::NotSearched(why)));
     }
-    let legs = options.max_moves;
     if !can_any_group_move(bodies, left, matrix) {
-        let why =
-            "no group can travel 2 % of the size of the largest part along the tested directions";
+        let why = "no group can travel 2 % of its size along the tested directions";
         return Ok(Err(PathSearch::NotSearched(why)));
     }
     let parts = bodies.assembly().parts();
     let placed: Vec<_> = left.iter().map(|&k| parts[k].solid().at(Pose::IDENTITY)).collect();
-    let mut fixed: Vec<usize> = (0..left.len()).filter(|&k| parts[left[k]].is_fixed()).collect();
     let cells = if options.prove { RemovalOptions::default().cells } else { 0 };
-    let options = RemovalOptions::default()
+    let limits = RemovalOptions::default()
         .with_cells(cells)
-        .with_tolerance(bodies.least_fit_tolerance(left))
-        .with_legs(legs)
-        .with_casts(CASTS * legs)
-        .with_looks(options.max_work / SHARE * legs as u64)
+        .with_legs(MAX_LEGS)
+        .with_places(usize::MAX)
+        .with_casts(usize::MAX)
+        .with_looks(u64::MAX)
+        .with_work(options.work())
         .with_directions(search_directions(&placed, matrix));
+    let index = |part: &usize| left.iter().position(|k| k == part);
+    let relation = |i: usize, j: usize| bodies.path_relation([left[i], left[j]], options.start);
+    let mut scene = RemovalScene::new(placed, relation);
+    if !among.leaving.is_empty() {
+        scene = scene.with_leaving(&among.leaving.iter().filter_map(index).collect::<Vec<_>>());
+    }
+    let mut fixed: Vec<usize> = among.stationary.iter().filter_map(index).collect();
     let constraints = bodies.assembly().constraints();
     for tries in 0.. {
-        let way = match RemovalSearch::search_among(&placed, &fixed, &options, watch.cancel_flag())
-        {
+        scene = scene.with_fixed(&fixed);
+        let way = match scene.search(&limits, watch.cancel_flag()) {
             Ok(RemovalSearch::Found(way)) => way,
             Ok(RemovalSearch::Proven(proof)) => {
-                let [a, b] = [&placed[0], &placed[1]];
-                proof.verify(a, b).map_err(to_assembly_error)?;
+                let Some([a, b]) = scene.first_proven_pair() else { break };
+                proof.verify(&a, &b).map_err(to_assembly_error)?;
                 return Ok(Err(PathSearch::Proven { cells: proof.cell_count() }));
             }
             Ok(RemovalSearch::NotFound { searched }) => {
-                return Ok(Err(PathSearch::NotFound { legs, searched }));
+                return Ok(Err(PathSearch::NotFound { effort: options.effort, searched }));
             }
             Err(FreeError::Overlapping { .. }) => {
                 let why = "they overlap with 0.8 of the tolerance, which the search uses";
@@ -121,13 +145,13 @@ pub(super) fn search_path(
             }
             Err(error) => return Err(to_assembly_error(error)),
         };
-        let found = removal_path(bodies.len(), left, &is_stationary, &way);
+        let found = removal_path(bodies.len(), left, &way);
         let violating = found.violating_parts(constraints, &bodies.part_mask(left));
         if violating.is_empty() {
-            way.verify(&placed).map_err(to_assembly_error)?;
+            way.verify_in(&scene).map_err(to_assembly_error)?;
             return Ok(Ok(found));
         }
-        fixed.extend((0..left.len()).filter(|&k| violating.contains(&left[k])));
+        fixed.extend(violating.iter().filter_map(index));
         fixed.sort_unstable();
         fixed.dedup();
         if tries == MAX_TRIES || fixed.len() >= left.len() {
@@ -180,22 +204,12 @@ fn unsupported_reason(
     left: &[usize],
     options: PlanOptions,
 ) -> Option<&'static str> {
-    let assembly = bodies.assembly();
-    let pairs = || left.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
-    let ignored = |[a, b]: [usize; 2]| assembly.ignored_contacts(a, b).is_some();
-    let lets_pass = options.start == StartOverlap::Ignore;
-    if options.max_moves < 2 {
-        Some("the maximum number of moves is 1")
+    if options.effort == 0 {
+        Some(EFFORT_IS_ZERO)
     } else if bodies.fit().tolerance() < 0.0 {
         Some("the fit has a minimum gap")
     } else if left.len() > MAX_PARTS {
-        Some("there are more than 24 parts")
-    } else if left.iter().any(|&k| assembly.parts()[k].is_surface()) {
-        Some("some parts are open surfaces")
-    } else if pairs().any(|p| bodies.tolerated_contacts(p).is_some()) {
-        Some("some pairs have a fit of their own")
-    } else if pairs().any(|p| ignored(p) || lets_pass && bodies.overlaps(p[0], p[1])) {
-        Some("some overlaps are ignored")
+        Some("there are more than 127 parts")
     } else {
         None
     }
@@ -215,50 +229,32 @@ fn search_directions(placed: &[Placed<'_, Solid>], matrix: &ContactMatrix) -> Ve
 /// Checks whether some group can travel one search step along a direction of the matrix. If not, no cast is needed.
 fn can_any_group_move(bodies: &Bodies, left: &[usize], matrix: &ContactMatrix) -> bool {
     let among = bodies.part_mask(left);
-    let size = |&k: &usize| bodies.bounds(k).side_lengths().max_element();
-    let step = RemovalOptions::default().step * left.iter().map(size).fold(0.0, f64::max);
+    let size = |k: usize| bodies.bounds(k).side_lengths().max_element();
+    let share = RemovalOptions::default().step;
     let fixed = |k: &usize| bodies.assembly().parts()[*k].is_fixed();
     (0..matrix.directions().len()).any(|k| {
-        let met = matrix.contacts_along(k).iter().filter(|m| m.displaced_distance() < step);
+        let is_close = |m: &&PairContact| m.displaced_distance() < share * size(m.moving);
+        let met = matrix.contacts_along(k).iter().filter(is_close);
         let graph = BlockingGraph::from_arcs(met.map(|m| (m.moving, m.fixed)), &among);
         graph.removable_groups().iter().any(|g| g.len() < left.len() && !g.iter().any(fixed))
     })
 }
 
-/// Returns the parts that a leg moves, and the sign of their motion. These are the parts of the leg, or all others in
-/// the opposite direction if only the leg's group contains stationary parts.
-fn moved_parts(
-    leg: &path::Leg,
-    left: &[usize],
-    is_stationary: &impl Fn(usize) -> bool,
-) -> (Vec<usize>, f64) {
-    let group: Vec<usize> = leg.bodies.iter().map(|&k| left[k]).collect();
-    let others: Vec<usize> = left.iter().copied().filter(|k| !group.contains(k)).collect();
-    let holds = |parts: &[usize]| parts.iter().any(|&part| is_stationary(part));
-    if holds(&group) && !holds(&others) { (others, -1.0) } else { (group, 1.0) }
-}
-
 /// Converts a path of the search to part indices of the assembly, and adds the return legs.
-fn removal_path(
-    count: usize,
-    left: &[usize],
-    is_stationary: &impl Fn(usize) -> bool,
-    way: &RemovalPath,
-) -> MovePath {
-    let turned = |v: DVec3, sign: f64| if sign < 0.0 { DVec3::ZERO - v } else { v };
+fn removal_path(count: usize, left: &[usize], way: &RemovalPath) -> MovePath {
+    let members = |bodies: &[usize]| bodies.iter().map(|&k| left[k]).collect::<Vec<usize>>();
     let (last, before) = way.legs.split_last().expect("a path has at least one leg");
     let (mut at, mut legs, mut return_legs) = (vec![DVec3::ZERO; count], Vec::new(), Vec::new());
     let mut motions = Vec::new();
     for leg in before {
-        let (parts, sign) = moved_parts(leg, left, is_stationary);
-        let motion = turned(leg.motion, sign);
+        let parts = members(&leg.bodies);
         for &part in &parts {
-            at[part] += motion;
+            at[part] += leg.motion;
         }
-        legs.push(Leg::straight(parts, turned(leg.direction, sign), leg.travel));
-        motions.push(motion);
+        legs.push(Leg::straight(parts, leg.direction, leg.travel));
+        motions.push(leg.motion);
     }
-    let (gone, sign) = moved_parts(last, left, is_stationary);
+    let gone = members(&last.bodies);
     // Parts of a group that left without relative displacement need not return.
     let as_it_stood = gone.iter().all(|&part| at[part] == at[gone[0]]);
     for leg in legs.iter().rev() {
@@ -269,5 +265,5 @@ fn removal_path(
             return_legs.push(Leg::straight(parts, direction, leg.travel));
         }
     }
-    MovePath { legs, motions, return_legs, parts: gone, direction: turned(last.direction, sign) }
+    MovePath { legs, motions, return_legs, parts: gone, direction: last.direction }
 }

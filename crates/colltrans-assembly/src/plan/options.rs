@@ -11,14 +11,12 @@ pub struct PlanOptions {
     pub start: StartOverlap,
     /// Minimum number of sampled directions for parts that no other direction moves; 0 disables sampling.
     pub samples: usize,
-    /// Maximum number of moves of a removal path; 1 disables the search for paths.
-    pub max_moves: usize,
     /// Whether to try to prove that no translation separates an interlocked group.
     pub prove: bool,
-    /// Work limit of each search for removal paths. For each of the `max_moves`, a fortieth of this number of node
-    /// pairs may be visited ([`RemovalOptions::looks`](colltrans::removal::path::RemovalOptions::looks)), and 500 casts
-    /// may be made.
-    pub max_work: u64,
+    /// Effort of each search for a step of several moves: a limit of [`EFFORT_WORK`](Self::EFFORT_WORK) times this
+    /// number on the [work](colltrans::removal::path::SearchWork::total). 0 disables these searches. A larger effort
+    /// continues the same search, so it finds what a smaller one finds, with equal work.
+    pub effort: u32,
     /// Direction opposite to gravity, of any nonzero length. `None` selects that of the
     /// [assembly](crate::Assembly::up).
     pub up: Option<DVec3>,
@@ -29,15 +27,24 @@ impl Default for PlanOptions {
         Self {
             start: StartOverlap::Refuse,
             samples: 162,
-            max_moves: 2,
             prove: true,
-            max_work: 20_000_000,
+            effort: Self::DEFAULT_EFFORT,
             up: None,
         }
     }
 }
 
 impl PlanOptions {
+    /// Work of a search for each unit of [`effort`](Self::effort).
+    pub const EFFORT_WORK: u64 = 2_000_000;
+    /// Default [`effort`](Self::effort).
+    pub const DEFAULT_EFFORT: u32 = 3;
+
+    /// Returns the limit of work of a search.
+    pub(super) fn work(&self) -> u64 {
+        Self::EFFORT_WORK.saturating_mul(u64::from(self.effort))
+    }
+
     /// Returns the options with another treatment of overlaps at the [`start`](Self::start).
     #[must_use]
     pub fn with_start(self, start: StartOverlap) -> Self {
@@ -50,22 +57,16 @@ impl PlanOptions {
         Self { samples, ..self }
     }
 
-    /// Returns the options with another [maximum number of moves](Self::max_moves).
+    /// Returns the options with another [`effort`](Self::effort).
     #[must_use]
-    pub fn with_max_moves(self, legs: usize) -> Self {
-        Self { max_moves: legs, ..self }
+    pub fn with_effort(self, effort: u32) -> Self {
+        Self { effort, ..self }
     }
 
     /// Returns the options with [proofs](Self::prove) enabled or disabled.
     #[must_use]
     pub fn with_proofs(self, prove: bool) -> Self {
         Self { prove, ..self }
-    }
-
-    /// Returns the options with another [work limit](Self::max_work).
-    #[must_use]
-    pub fn with_looks(self, looks: u64) -> Self {
-        Self { max_work: looks, ..self }
     }
 
     /// Returns the options with another [`up`](Self::up) direction.

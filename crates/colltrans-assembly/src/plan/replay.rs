@@ -26,7 +26,7 @@ pub(super) fn checked_travel(
 ) -> Result<Bounded, AssemblyError> {
     match &removal.path {
         None => straight_travel(bodies, removal, order, start),
-        Some(path) => path_travel(bodies, path, others),
+        Some(path) => path_travel(bodies, path, others, start),
     }
 }
 
@@ -61,6 +61,7 @@ fn path_travel(
     bodies: &Bodies,
     path: &MovePath,
     others: &[usize],
+    start: StartOverlap,
 ) -> Result<Bounded, AssemblyError> {
     let mut all = [&path.parts[..], others].concat();
     all.sort_unstable();
@@ -71,8 +72,9 @@ fn path_travel(
         moving.iter().flat_map(|&a| outside.iter().map(move |&b| [a, b])).collect::<Vec<_>>()
     };
     let examine = |[a, b]: [usize; 2], by: DVec3, motion: DVec3| {
-        // Parts that overlap at the start move as one, or the step was rejected.
-        let met = |share: &&f64| bodies.overlaps_displaced(a, by + motion * **share, b);
+        // Parts that overlap at the start move as one, or their overlap is ignored.
+        let skipped = bodies.disregards_contacts(a, b, start);
+        let met = |share: &&f64| !skipped && bodies.overlaps_displaced(a, by + motion * **share, b);
         let found = POSITIONS.iter().find(met);
         let length = motion.length();
         let why = |share| replay_error(bodies, [a, b], motion / length, share * length);

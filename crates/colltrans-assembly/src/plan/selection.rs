@@ -29,8 +29,10 @@ pub struct SelectedRemoval {
 
 /// Computes a plan that removes selected parts.
 ///
-/// Removes the fewest other parts that suffice along the directions of the matrix. If no set suffices, computes a
-/// plan of all parts and keeps the steps that the selected parts need.
+/// Removes the fewest other parts that suffice in single moves along the directions of the matrix. If that is any part,
+/// searches for several moves that remove the selected parts alone, at first of these parts only, then with others that
+/// move aside and return, and then for each other part in turn whether it may stay. If no set suffices, computes a plan
+/// of all parts and keeps the steps that the selected parts need.
 ///
 /// # Errors
 /// Returns the errors of [`disassemble`](super::disassemble), and an error if no parts or all parts are selected or a
@@ -55,13 +57,54 @@ pub fn remove<'a>(
     }
     matrix.compute_all(watch)?;
     let likes = first_identical_parts(bodies.assembly());
-    let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
-    planner.wanted = &parts;
     let found = smallest_sufficient_set(bodies, matrix, &parts);
-    planner.movable = found.as_ref().map(|set| &set.parts[..]);
-    planner.plan_all(matrix)?;
-    let mut plan = planner.plan;
-    if found.is_none() {
+    let other_count = |set: &SufficientSet| set.parts.len() - parts.len();
+    let plan_with = |movable: Option<&[usize]>, makes_room: bool| {
+        let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
+        (planner.wanted, planner.movable, planner.makes_room) = (&parts, movable, makes_room);
+        planner.plan_all(matrix)?;
+        Ok::<Plan, AssemblyError>(planner.plan)
+    };
+    let is_whole = |plan: &Plan| {
+        let is_there = |part: &usize| !plan.remaining.contains(part) && !plan.base.contains(part);
+        parts.iter().all(is_there)
+    };
+    // A set of single moves with others may be larger than necessary: several moves may take out fewer parts.
+    let mut fewest = found.as_ref().map(|set| set.parts.clone());
+    let mut planned = None;
+    if options.effort > 0 && found.as_ref().is_none_or(|set| other_count(set) > 0) {
+        for makes_room in [false, true] {
+            let plan = plan_with(Some(&parts), makes_room)?;
+            if is_whole(&plan) {
+                (planned, fewest) = (Some(plan), Some(parts.clone()));
+                break;
+            }
+        }
+    }
+    let dropped = |set: &[usize], other: usize| {
+        set.iter().copied().filter(|&part| part != other).collect::<Vec<usize>>()
+    };
+    if options.effort > 0 && planned.is_none() {
+        let set = fewest.clone().unwrap_or_default();
+        for &other in set.iter().filter(|part| !parts.contains(part)) {
+            let Some(known) = &fewest else { break };
+            let smaller = dropped(known, other);
+            if smaller.len() == parts.len() {
+                break;
+            }
+            let plan = plan_with(Some(&smaller), false)?;
+            if is_whole(&plan) {
+                (planned, fewest) = (Some(plan), Some(smaller));
+            }
+        }
+    }
+    let planned = match planned {
+        Some(plan) => plan,
+        None => plan_with(fewest.as_deref(), false)?,
+    };
+    let is_reduced = fewest.as_ref().map(Vec::len) != found.as_ref().map(|set| set.parts.len());
+    let mut plan = planned;
+    if fewest.is_none() {
         plan.drop_unneeded_steps(&parts, bodies.len());
     }
     let moved = plan
@@ -71,7 +114,8 @@ pub fn remove<'a>(
         .flat_map(|step| step.parts.clone());
     let (gone, mut others): (Vec<usize>, Vec<usize>) = moved.partition(|part| parts.contains(part));
     others.sort_unstable();
-    let least = found.is_some_and(|SufficientSet { least, .. }| least);
+    let single = !is_reduced && found.is_some_and(|SufficientSet { least, .. }| least);
+    let least = others.is_empty() || single;
     let out = gone.len() == parts.len();
     plan.selection = Some(SelectedRemoval { parts, others, is_minimal: least, is_complete: out });
     Ok(Plan { first_identical: likes.clone(), ..plan })

@@ -34,16 +34,23 @@ const TOLERANCE_FACTOR: f64 = 1.05;
 /// Returns the two legs of a step that unscrews some parts from others, and the travel of the second leg.
 ///
 /// The first leg turns, the second is straight. `others` are the parts that remain, and `present` is their mask.
-/// `travel` is the total distance. Returns `None` if no thread connects the parts, or if no helix was found.
+/// `travel` is the total distance. With `is_last` the parts then move on forever, otherwise another move follows.
+/// Returns `None` if no thread connects the parts, if no helix was found, or if the parts would not leave the thread.
 pub(super) fn unscrewing_legs(
     bodies: &Bodies,
     (parts, direction): (&[usize], DVec3),
     (others, present): (&[usize], &[bool]),
-    travel: Bounded,
+    (travel, is_last): (Bounded, bool),
     start: StartOverlap,
 ) -> Option<([Leg; 2], Bounded)> {
     let threads = threads_along(bodies, parts, present, direction);
-    let screw = ScrewMotion::new(bodies, *threads.first()?, direction)?;
+    let mut screw = ScrewMotion::new(bodies, *threads.first()?, direction)?;
+    if !is_last {
+        if screw.way > travel.value {
+            return None;
+        }
+        screw.end = Some(travel.value - screw.way);
+    }
     let one = threads.iter().all(|(_, thread)| screw.has_same_helix(thread));
     let mut turning = screw.unproven_leg(parts);
     let proof = if one {
@@ -91,6 +98,8 @@ struct ScrewMotion {
     axis: DVec3,
     way: f64,
     turns: f64,
+    /// Distance along the axis after the turn, if another move follows.
+    end: Option<f64>,
 }
 
 impl ScrewMotion {
@@ -106,7 +115,7 @@ impl ScrewMotion {
         let way = seat.exit_travels[usize::from((sense < 0.0) == is_inner)];
         let point = thread.axis[0] + if is_inner { seat.lateral_offset } else { DVec3::ZERO };
         let turns = way / thread.pitch?;
-        Some(Self { thread, is_inner, seat, point, axis, way, turns })
+        Some(Self { thread, is_inner, seat, point, axis, way, turns, end: None })
     }
 
     /// Returns the sense of the motion along the thread's axis, 1 or -1 (reversed if the hole moves), and the axis
@@ -177,7 +186,7 @@ impl ScrewMotion {
                 continue;
             }
             let [part, other] = pair.map(name);
-            let along = (&motion, self.axis);
+            let along = (&motion, self.axis, self.end);
             match bodies.screw_outcome(pair, along, None).map_err(|error| error.to_string())? {
                 ScrewOutcome::Free(more) => pairs += more,
                 ScrewOutcome::Overlapping(_) => {
@@ -215,7 +224,7 @@ impl ScrewMotion {
         let names = pair.map(|part| bodies.assembly().parts()[part].name());
         let refused = |error: QueryError| error.to_string();
         loop {
-            let along = (motion, self.axis);
+            let along = (motion, self.axis, self.end);
             let (least, why) =
                 match bodies.screw_outcome(pair, along, Some(tolerance)).map_err(refused)? {
                     ScrewOutcome::Free(pairs) => return Ok((tolerance, pairs)),

@@ -11,6 +11,7 @@ use super::sheet::step_list;
 use super::words::{sentence, time_text};
 use super::{Report, html_colour, picture_markup};
 use crate::Fit;
+use crate::attempts::next_attempts;
 use crate::plan::Interlocked;
 
 /// Width of the picture in pixels.
@@ -88,7 +89,10 @@ fn result_section(r: &Report) -> Markup {
         } @else if whole && !plan.base.is_empty() {
             p.proof { "It can be taken apart completely. " (words.name_list(&plan.base)) " stays in place, all other parts are removed from it." }
         } @else if !whole {
-            p.warn { "It cannot be taken apart completely. " (interlocking_reasons(r)) }
+            p.warn { "Not all of it comes apart. " (interlocking_reasons(r)) }
+        }
+        @for attempt in next_attempts(r.f) {
+            p { "To try: " code { (attempt.option) } ", because " (attempt.reason) "." }
         }
         @let remaining = r.f.start.remaining().count();
         @if remaining > 0 {

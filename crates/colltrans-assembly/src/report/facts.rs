@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde_json::{Value, json};
 
+use crate::attempts::{Attempt, next_attempts};
 use crate::bodies::Fit;
 use crate::findings::Analysis;
 use crate::hints::find_hints;
@@ -40,6 +41,12 @@ pub fn findings_json(f: &Analysis) -> Value {
     });
     if let (Value::Object(object), Value::Object(mut more)) = (&mut object, more) {
         object.append(&mut more);
+    }
+    let attempts = next_attempts(f);
+    if !attempts.is_empty() {
+        let to_json =
+            |attempt: &Attempt| json!({ "option": attempt.option, "why": attempt.reason });
+        object["try"] = attempts.iter().map(to_json).collect();
     }
     if !f.maps.is_empty() {
         object["maps"] = f.maps.iter().map(|(_, map)| record::map_json(f.bodies, map)).collect();

@@ -15,7 +15,7 @@ use crate::common::{cuboid, part, planned, stud, well};
 const AXES: [DVec3; 6] = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
 
 fn options() -> PlanOptions {
-    PlanOptions::default().with_samples(0).with_max_moves(1).with_proofs(false)
+    PlanOptions::default().with_samples(0).with_effort(0).with_proofs(false)
 }
 
 fn matrix<'a>(bodies: &'a Bodies<'a>) -> ContactMatrix<'a> {
@@ -412,7 +412,7 @@ fn assembly_left<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<&'a str> {
 fn paths_of_several_moves_obey_constraints() {
     let plan = |assembly: Assembly| {
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-        planned(&bodies, PlanOptions::default().with_max_moves(4))
+        planned(&bodies, PlanOptions::default())
     };
     let plain = plan(stud());
     let [step] = &plain.steps[..] else { panic!("{plain:?}") };

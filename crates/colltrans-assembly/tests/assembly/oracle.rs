@@ -303,7 +303,7 @@ fn removal_direction_between_samples_is_found() {
         // Without the cover and the directions that a proof leaves open, no single move is found, but two moves: to
         // the window, and out.
         let options = PlanOptions::default().with_samples(0).with_proofs(false);
-        assert!(planned(&bodies, options.with_max_moves(1)).steps.is_empty());
+        assert!(planned(&bodies, options.with_effort(0)).steps.is_empty());
         let plan = planned(&bodies, options);
         walk(&bodies, &plan);
         assert_eq!(plan.steps[0].path.len(), 2, "{:?}", plan.steps[0].path);

@@ -12,7 +12,7 @@ use colltrans_assembly::{AnalysisRequest, Assembly, Bodies, Fit, Watch};
 /// Computes a plan and its report.
 fn plan_and_report(assembly: &Assembly, title: &str) -> (Plan, String) {
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
-    let options = PlanOptions::default().with_max_moves(4);
+    let options = PlanOptions::default();
     let question = AnalysisRequest::default().with_options(options);
     let findings = question.analyse(&bodies, Watch::default()).unwrap();
     let page = html::report_page(&findings, title);

@@ -5,12 +5,16 @@ use std::path::Path;
 
 use crate::common::*;
 use colltrans_assembly::plan::{Leg, PathSearch, Plan, PlanOptions};
-use colltrans_assembly::{AnalysisRequest, Assembly, Bodies, Fit, Part, Piece, Watch, record};
+use colltrans_assembly::roles::{PairFit, Role};
+use colltrans_assembly::{
+    AnalysisRequest, Assembly, Bodies, Fit, Ignored, Part, Piece, Watch, record,
+};
 use colltrans_assembly_io::read::{ReadOptions, read};
+use colltrans_mesh::Mesh;
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::solids::TRAY_WITH_GROOVES;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 fn planned(assembly: &Assembly, options: PlanOptions) -> Plan {
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
@@ -119,12 +123,9 @@ fn default_options_find_a_path_of_two_moves() {
 }
 
 #[test]
-fn one_leg_disables_the_path_search() {
-    let plan = planned(&slot(), PlanOptions::default().with_max_moves(1));
-    assert_eq!(
-        plan.interlocked[0].path_search,
-        PathSearch::NotSearched("the maximum number of moves is 1")
-    );
+fn effort_zero_disables_the_path_search() {
+    let plan = planned(&slot(), PlanOptions::default().with_effort(0));
+    assert_eq!(plan.interlocked[0].path_search, PathSearch::NotSearched("the effort is 0"));
     assert_eq!(plan.remaining, [0, 1]);
 }
 
@@ -150,7 +151,7 @@ fn lid_that_makes_room_returns_after_the_removal() {
     // The stop holds the lid: this is proven, or reported with the extent of the search.
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     for (proofs, words) in
-        [(true, "Nor do several straight moves"), (false, "Up to 2 moves, one after")]
+        [(true, "Nor do several straight moves"), (false, "not found with effort 3")]
     {
         let plan = planned(&assembly, PlanOptions::default().with_proofs(proofs));
         let stuck = &plan.interlocked[0];
@@ -228,7 +229,7 @@ fn random_puzzles_agree_with_exhaustive_cube_moves() {
     for case in 0..150 {
         let cubes = Cubes::random(&mut random);
         let assembly = of_cubes(&cubes);
-        let plan = planned(&assembly, PlanOptions::default().with_max_moves(12).with_samples(0));
+        let plan = planned(&assembly, PlanOptions::default().with_samples(0));
         let (expected, level) = (cubes.can_separate(), cubes.level());
         assert_eq!(plan.interlocked.is_empty(), expected, "case {case}: {cubes:?} {plan:?}");
         check_base_is_stationary(&assembly, &plan);
@@ -251,16 +252,139 @@ fn collected(name: &str) -> Option<Assembly> {
 #[test]
 fn burr_of_level_six_is_disassembled_by_six_moves() {
     let Some(assembly) = collected("burr_p3_19") else { return };
-    let plan = planned(&assembly, PlanOptions::default().with_max_moves(12).with_samples(0));
+    let plan = planned(&assembly, PlanOptions::default().with_samples(0));
     assert!(plan.remaining.is_empty() && plan.interlocked.is_empty());
     check_base_is_stationary(&assembly, &plan);
     assert_eq!(plan.steps[0].path.len(), 6);
     let taken: usize = plan.steps.iter().filter(|s| s.parts.len() == 1).count();
     assert!(taken + plan.base.len() >= 5, "every piece must be removed: {:?}", plan.steps);
-    // Two moves do not suffice, and the plan reports this.
-    let plan = planned(&assembly, PlanOptions::default().with_samples(0));
-    let PathSearch::NotFound { legs: 2, searched } = plan.interlocked[0].path_search else {
-        panic!("{plan:?}")
+    // More effort finds the same path. Too little effort is reported, and proves nothing.
+    for effort in [1, 100] {
+        let other = planned(&assembly, PlanOptions::default().with_samples(0).with_effort(effort));
+        let Some(stuck) = other.interlocked.first() else {
+            assert_eq!(other.steps, plan.steps, "effort {effort}");
+            continue;
+        };
+        let PathSearch::NotFound { searched, .. } = &stuck.path_search else { panic!("{other:?}") };
+        assert!(effort == 1 && searched.total() >= PlanOptions::EFFORT_WORK, "{searched:?}");
+    }
+}
+
+/// Returns the slot with its key, and `more` parts beside it.
+fn slot_with(more: Vec<Part>) -> Assembly {
+    Assembly::new(slot().parts().iter().cloned().chain(more).collect()).unwrap()
+}
+
+/// Checks that the key leaves the slot in two moves.
+fn check_key_leaves(assembly: &Assembly, plan: &Plan) {
+    let key = assembly.parts_named(&["key"]).unwrap();
+    let step =
+        plan.steps.iter().find(|step| step.parts == key).unwrap_or_else(|| panic!("{plan:?}"));
+    assert_eq!(step.path.len(), 2, "{step:?}");
+}
+
+#[test]
+fn roles_of_other_pairs_do_not_disable_the_path_search() {
+    let block = |name: &str, x: f64| blocks(name, &[[[x, 10.0, 0.0], [x + 1.0, 11.0, 1.0]]]);
+    let assembly = slot_with(vec![block("a", 0.0), block("b", 1.0), block("c", 5.0)]);
+    let glued = PairFit { role: Some(Role::Glued), tolerance: None };
+    let glued_pair = assembly.clone().with_pair([&["a"], &["b"]], glued).unwrap();
+    check_key_leaves(&glued_pair, &planned(&glued_pair, PlanOptions::default()));
+    let soft = PairFit { role: Some(Role::Soft), tolerance: Some(0.1) };
+    let with_tolerance = assembly.with_pair([&["key"], &["plate"]], soft).unwrap();
+    check_key_leaves(&with_tolerance, &planned(&with_tolerance, PlanOptions::default()));
+}
+
+#[test]
+fn glued_parts_leave_together_in_several_moves() {
+    let knob = blocks("knob", &[[[1.0, -1.0, 3.0], [2.0, 1.0, 4.0]]]);
+    let glued = PairFit { role: Some(Role::Glued), tolerance: None };
+    let assembly = slot_with(vec![knob]).with_pair([&["key"], &["knob"]], glued).unwrap();
+    let plan = planned(&assembly, PlanOptions::default());
+    let moved = assembly.parts_named(&["key", "knob"]).unwrap();
+    let step = &plan.steps[0];
+    assert_eq!((&step.parts, step.path.len()), (&moved, 2), "{plan:?}");
+    assert!(step.path.iter().all(|leg| leg.parts == moved), "{step:?}");
+}
+
+#[test]
+fn ignored_overlaps_and_open_surfaces_take_part_in_paths() {
+    // The key is 0.05 too deep in the plate.
+    let low = blocks(
+        "key",
+        &[[[0.5, -1.5, -0.05], [2.5, 1.5, 0.8]], [[0.5, -0.5, 0.5], [2.5, 0.5, 3.0]]],
+    );
+    let assembly = Assembly::new(vec![low, slot().parts()[1].clone()]).unwrap();
+    assert!(planned(&assembly, PlanOptions::default()).steps.is_empty());
+    let ignored = assembly.with_ignored(&[["key", "plate"]], Ignored::Overlap).unwrap();
+    let bodies = Bodies::new(&ignored, Fit::default_for(&ignored)).unwrap();
+    check_key_leaves(&ignored, &crate::common::planned(&bodies, PlanOptions::default()));
+    // A sheet without thickness lies below the plate.
+    let corners = [[13.0, 1.0, -3.0], [18.0, 1.0, -3.0], [18.0, -1.0, -3.0], [13.0, -1.0, -3.0]];
+    let mesh = Mesh::new(corners.map(DVec3::from).to_vec(), vec![vec![0, 1, 2, 3]]);
+    let sheet = part("sheet", &[Piece { mesh, world_from_piece: DAffine3::IDENTITY }]);
+    let below = slot_with(vec![sheet]).with_fixed(&["plate", "sheet"]).unwrap();
+    check_key_leaves(&below, &planned(&below, PlanOptions::default()));
+}
+
+#[test]
+fn more_than_24_parts_are_searched() {
+    let block = |k: u32| {
+        let x = 3.0 * f64::from(k);
+        blocks(&format!("block{k}"), &[[[x, 10.0, 0.0], [x + 1.0, 11.0, 1.0]]])
     };
-    assert!(searched.complete && searched.places > 1, "{searched:?}");
+    let assembly =
+        slot_with((0..30).map(block).collect()).with_fixed(&["plate", "block*"]).unwrap();
+    check_key_leaves(&assembly, &planned(&assembly, PlanOptions::default()));
+}
+
+#[test]
+fn pin_leaves_a_channel_with_a_bend_of_60_degrees() {
+    // The channel is open only at its far end.
+    let plate = channel_with_bend();
+    let pin = blocks("pin", &[[[-0.4, -0.4, 0.1], [0.4, 0.4, 0.9]]]);
+    let assembly = Assembly::new(vec![pin, plate]).unwrap();
+    let plan = planned(&assembly, PlanOptions::default().with_samples(0));
+    assert!(plan.interlocked.is_empty(), "{plan:?}");
+    assert!(plan.steps[0].path.len() >= 2, "{plan:?}");
+}
+
+/// Returns a plate with a channel along x from 0 to 10 and then, at an angle of 60 degrees, to its open end.
+fn channel_with_bend() -> Part {
+    let (u, v) = (DVec3::new(0.5, 0.75_f64.sqrt(), 0.0), DVec3::new(-(0.75_f64.sqrt()), 0.5, 0.0));
+    let second = DAffine3::from_cols(u, v, DVec3::Z, DVec3::new(10.0, 0.0, 0.0));
+    let placed = |[low, high]: [[f64; 3]; 2], world_from_piece: DAffine3| Piece {
+        world_from_piece,
+        ..cuboid(low, high)
+    };
+    let (first, tall) = (DAffine3::IDENTITY, [0.0, 1.0]);
+    let wall = |x: [f64; 2], y: [f64; 2], at: DAffine3| {
+        placed([[x[0], y[0], tall[0]], [x[1], y[1], tall[1]]], at)
+    };
+    part(
+        "plate",
+        &[
+            placed([[-3.0, -14.0, -1.0], [30.0, 14.0, 0.0]], first),
+            placed([[-3.0, -14.0, 1.0], [30.0, 14.0, 2.0]], first),
+            wall([-2.0, -1.0], [-2.0, 2.0], first),
+            wall([-2.0, 9.5], [0.5, 1.5], first),
+            wall([-2.0, 12.5], [-1.5, -0.5], first),
+            wall([0.0, 7.0], [1.2, 2.2], second),
+            wall([0.8, 7.0], [-2.2, -1.2], second),
+        ],
+    )
+}
+
+#[test]
+fn selected_part_leaves_alone_if_others_move_aside() {
+    let assembly = sliding_lid();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let cube = assembly.parts_named(&["cube"]).unwrap();
+    let question = AnalysisRequest::default().with_selected(cube.clone());
+    let plan = question.analyse(&bodies, Watch::default()).unwrap().plan;
+    check_moves(&bodies, &plan);
+    let selection = plan.selection.as_ref().expect("a selection");
+    assert!(selection.is_complete && selection.others.is_empty(), "{plan:?}");
+    assert_eq!((plan.steps.len(), &plan.steps[0].parts), (1, &cube));
+    assert_eq!(plan.steps[0].return_legs.len(), 1);
 }

@@ -67,7 +67,7 @@ fn planned(assembly: &Assembly, up: DVec3) -> Plan {
     let matrix =
         ContactMatrix::new(&bodies, &directions, &all, StartOverlap::Refuse, watch).unwrap();
     let options =
-        PlanOptions::default().with_samples(0).with_proofs(false).with_max_moves(1).with_up(up);
+        PlanOptions::default().with_samples(0).with_proofs(false).with_effort(0).with_up(up);
     disassemble(&bodies, &matrix, &[], options, watch).unwrap()
 }
 

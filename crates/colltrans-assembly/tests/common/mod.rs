@@ -49,7 +49,7 @@ pub fn planned(bodies: &Bodies, options: PlanOptions) -> Plan {
 
 /// Returns the suggestions for overlapping parts.
 pub fn suggested(bodies: &Bodies) -> Vec<Suggestion> {
-    let options = PlanOptions::default().with_proofs(false).with_max_moves(1);
+    let options = PlanOptions::default().with_proofs(false).with_effort(0);
     let question = AnalysisRequest::default().with_options(options);
     question.analyse(bodies, Watch::default()).unwrap().suggestions
 }

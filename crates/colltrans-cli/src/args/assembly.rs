@@ -5,10 +5,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use colltrans::glam::DVec3;
+use colltrans_assembly::plan::PlanOptions;
 use colltrans_assembly_io::read::Split;
 
 use super::directions::WorkArguments;
-use super::values::{direction, factor, legs, length, samples, threads};
+use super::values::{direction, factor, length, removed_legs, samples, threads};
 
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
@@ -47,9 +48,12 @@ pub(crate) struct AssemblyArguments {
     pub(crate) free: Vec<String>,
     #[command(flatten)]
     pub(crate) work: WorkArguments,
-    /// Maximum number of moves of one step; parts may make room and go back
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = legs)]
-    pub(crate) legs: usize,
+    /// Work of each search for a step of several moves or a turn; 0 for single moves only
+    #[arg(long, value_name = "N", default_value_t = PlanOptions::DEFAULT_EFFORT)]
+    pub(crate) effort: u32,
+    /// Removed: `--effort` replaces it
+    #[arg(long, value_name = "N", hide = true, value_parser = removed_legs)]
+    pub(crate) legs: Option<u32>,
     /// Do not try to prove that no straight motion separates interlocked groups
     #[arg(long, hide_short_help = true)]
     pub(crate) no_proofs: bool,

@@ -53,11 +53,6 @@ impl WorkArguments {
     pub(crate) fn options(self) -> FreeOptions {
         FreeOptions::DEFAULT.with_depth(self.depth).with_looks(self.looks)
     }
-
-    /// Returns the maximum number of pairs of boxes to visit.
-    pub(crate) fn max_looks(self) -> u64 {
-        self.looks
-    }
 }
 
 impl DirectionsArguments {

@@ -7,9 +7,6 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{Pose, Solver, cta};
 
-/// Maximum number of moves of one step.
-const MAX_LEGS: usize = 1_000;
-
 /// Parses a direction: three numbers, or the name of an axis.
 pub(crate) fn direction(text: &str) -> Result<DVec3, String> {
     if let Some(axis) = axis_by_name(text.trim()) {
@@ -286,12 +283,12 @@ const MAX_THREADS: usize = 1024;
 /// Maximum number of sample directions, each of which is a query for every part.
 const MAX_SAMPLES: usize = 655_362;
 
-/// Parses the maximum number of moves of a step.
-pub(crate) fn legs(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(count) if (1..=MAX_LEGS).contains(&count) => Ok(count),
-        _ => Err(format!("expected a number from 1 to {MAX_LEGS}")),
-    }
+/// Rejects the removed option `--legs`.
+pub(crate) fn removed_legs(text: &str) -> Result<u32, String> {
+    Err(format!(
+        "the number of moves has no limit any more; give --effort N instead of --legs {text}: the work of each \
+         search, 3 by default, 0 for single moves only"
+    ))
 }
 
 /// Parses a number of sample directions.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use colltrans::glam::DVec3;
+use colltrans_assembly::attempts::next_attempts;
 use colltrans_assembly::audit::{AuditOptions, AuditedPair, PairFinding, examine_pair};
 use colltrans_assembly::hints::find_hints;
 use colltrans_assembly::plan::{Plan, precedence_graph};
@@ -227,6 +228,11 @@ fn summary_text(findings: &Analysis) -> String {
         let head = stuck.heading(findings.bodies);
         let _ = writeln!(text, "{head}\n  {}: {reason}\n    {details}", names(&stuck.parts));
     }
+    for (k, attempt) in next_attempts(findings).iter().enumerate() {
+        let head = if k == 0 { "to try\n" } else { "" };
+        let [option, reason] = [&attempt.option, &attempt.reason].map(escape_line);
+        let _ = writeln!(text, "{head}  {option}: {reason}");
+    }
     for (name, map) in &findings.maps {
         match &map.cover {
             Ok(cover) => {
@@ -309,9 +315,12 @@ fn push_stage(text: &mut String, findings: &Analysis, stage: &Range<usize>) {
         for (back, leg) in
             step.path.iter().map(|l| ("", l)).chain(step.return_legs.iter().map(|l| ("back ", l)))
         {
+            let turned = leg.turn.as_ref().map_or_else(String::new, |turn| {
+                format!("unscrew, {:.2} turns, ", turn.turns.abs())
+            });
             let _ = writeln!(
                 text,
-                "     {back}{}: {}",
+                "     {back}{}: {turned}{}",
                 names(&leg.parts),
                 travel_text(leg.travel, leg.direction)
             );

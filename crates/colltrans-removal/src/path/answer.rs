@@ -170,7 +170,7 @@ impl RemovalSearch {
         let mut pairs = Vec::new();
         for j in 1..bodies.len() {
             for i in 0..j {
-                let relation = *scene.relation([i, j]).0;
+                let relation = scene.relation([i, j]).0;
                 let step = steps[i].min(steps[j]);
                 pairs.push(BodyPair::new(
                     relation,

@@ -60,7 +60,7 @@ impl<'a> BodyPair<'a> {
     /// # Errors
     /// Returns an error for bodies that a cast rejects.
     pub(super) fn new(
-        relation: PairRelation<'a>,
+        relation: &PairRelation<'a>,
         placed: [Placed<'a, Solid>; 2],
         boxes: [Aabb; 2],
         step: f64,

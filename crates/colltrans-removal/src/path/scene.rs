@@ -9,14 +9,14 @@ use colltrans_convex::body::Placed;
 use colltrans_solid::body::Solid;
 
 /// Relation of two bodies in a search for removal paths.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub enum PairRelation<'a> {
     /// The bodies never block each other.
     Ignored,
     /// The bodies always move together.
     Joined,
     /// The bodies block each other.
-    Blocking(BlockingPair<'a>),
+    Blocking(Box<BlockingPair<'a>>),
 }
 
 /// Two bodies that block each other: those of the proofs, and slightly larger ones of the search.
@@ -72,7 +72,8 @@ impl<'a> RemovalScene<'a> {
     /// Builds the scene of bodies that all block each other, with one tolerance.
     pub fn with_tolerance(bodies: &[Placed<'a, Solid>], tolerance: f64) -> Self {
         Self::new(bodies.to_vec(), |i, j| {
-            PairRelation::Blocking(BlockingPair::new([bodies[i], bodies[j]], tolerance))
+            let pair = BlockingPair::new([bodies[i], bodies[j]], tolerance);
+            PairRelation::Blocking(Box::new(pair))
         })
     }
 
@@ -126,11 +127,9 @@ impl<'a> RemovalScene<'a> {
     /// block each other.
     pub(super) fn proven_pair(&self, pair: [usize; 2]) -> Option<([Placed<'a, Solid>; 2], f64)> {
         let (relation, reversed) = self.relation(pair);
-        let PairRelation::Blocking(BlockingPair { proven: [a, b], tolerance, .. }) = *relation
-        else {
-            return None;
-        };
-        Some((if reversed { [b, a] } else { [a, b] }, tolerance))
+        let PairRelation::Blocking(pair) = relation else { return None };
+        let [a, b] = pair.proven;
+        Some((if reversed { [b, a] } else { [a, b] }, pair.tolerance))
     }
 
     /// Checks whether two bodies always move together.
@@ -141,7 +140,7 @@ impl<'a> RemovalScene<'a> {
     /// Iterates over the pairs that block each other.
     pub(super) fn blocking_pairs(&self) -> impl Iterator<Item = &BlockingPair<'a>> {
         self.relations.iter().filter_map(|relation| match relation {
-            PairRelation::Blocking(pair) => Some(pair),
+            PairRelation::Blocking(pair) => Some(&**pair),
             _ => None,
         })
     }

@@ -103,6 +103,16 @@ impl ExactPoint for FreePoint {
 
 /// Returns the computed facets of the closed shells of a body that may meet a box, in the setting frame.
 pub(super) fn near_facets(scene: &PairFrame, side: &PlacedBody, room: &Aabb) -> Vec<Corners> {
+    near_triangles(scene, side, room).into_iter().map(|(_, corners)| corners).collect()
+}
+
+/// Returns the triangles of the closed shells of a body that may meet a box, with their computed corners in the setting
+/// frame.
+pub(super) fn near_triangles(
+    scene: &PairFrame,
+    side: &PlacedBody,
+    room: &Aabb,
+) -> Vec<(usize, Corners)> {
     let (mut open, mut near) = (vec![0_u32], Vec::new());
     while let Some(at) = open.pop() {
         let node = &side.solid.nodes()[at as usize];
@@ -111,7 +121,7 @@ pub(super) fn near_facets(scene: &PairFrame, side: &PlacedBody, room: &Aabb) -> 
         }
         if node.is_leaf() {
             let facets = leaf_facets(side, node);
-            near.extend(facets.filter(|f| Aabb::from_triangle(*f).intersects(room)));
+            near.extend(facets.filter(|(_, f)| Aabb::from_triangle(*f).intersects(room)));
         } else {
             open.extend(node.child_positions(at));
         }
@@ -119,10 +129,13 @@ pub(super) fn near_facets(scene: &PairFrame, side: &PlacedBody, room: &Aabb) -> 
     near
 }
 
-/// Returns the computed facets of closed shells in a leaf.
-fn leaf_facets<'s>(side: &'s PlacedBody<'_>, leaf: &Node) -> impl Iterator<Item = Corners> + 's {
+/// Returns the triangles of closed shells in a leaf, with their computed corners.
+fn leaf_facets<'s>(
+    side: &'s PlacedBody<'_>,
+    leaf: &Node,
+) -> impl Iterator<Item = (usize, Corners)> + 's {
     let solid: &Solid = side.solid;
-    leaf.facets().filter(|t| !solid.is_open(*t)).map(move |t| facet_corners(side, t))
+    leaf.facets().filter(|t| !solid.is_open(*t)).map(move |t| (t, facet_corners(side, t)))
 }
 
 /// Returns a box around the closed shells of a body, except for rounding errors of corners: the union of the boxes of
@@ -141,7 +154,7 @@ fn body_box(scene: &PairFrame, side: &PlacedBody) -> Aabb {
     }
     level.into_iter().fold(Aabb::EMPTY, |all, at| {
         all.union(&if node(at).is_leaf() {
-            Aabb::from_points(leaf_facets(side, node(at)).flatten())
+            Aabb::from_points(leaf_facets(side, node(at)).flat_map(|(_, corners)| corners))
         } else {
             Projected::new(scene, side, at as usize).bounds
         })
@@ -204,7 +217,7 @@ fn contains(Aabb { low, high }: &Aabb, point: DVec3) -> bool {
 }
 
 /// Returns twice the area of a convex polygon.
-fn double_area(polygon: &[DVec3]) -> f64 {
+pub(super) fn double_area(polygon: &[DVec3]) -> f64 {
     let Some((first, rest)) = polygon.split_first() else { return 0.0 };
     rest.windows(2).map(|pair| (pair[0] - *first).cross(pair[1] - *first)).sum::<DVec3>().length()
 }

@@ -4,16 +4,16 @@
 //!   or outside the other body as a whole.
 //! - One body contains the other if all shells of the inner one lie inside the outer one, and no shell that bounds
 //!   material of the outer one, such as the wall of a cavity, lies inside the inner one.
-//! - The volume is a sum over pairs of facets ([`prisms`](super::prisms)) or, if pieces of a body overlap, that of
+//! - The volume is a sum over facets ([`arrangement`](super::arrangement)) or, if its error is too large, that of
 //!   [`cells`](super::cells). The box and the point are those of cells. If a contained body is convex, all of them are
 //!   its own.
 
 use glam::DVec3;
 
+use super::arrangement::common_volume;
 use super::cells::{CommonCells, box_cells, common_box, common_cells};
 use super::placed_solids;
 use super::prepared::PreparedPair;
-use super::prisms::common_volume;
 use crate::body::{Solid, check_is_not_rounded};
 use crate::solve::hulls::ConvexBody;
 use crate::solve::inside::{bounding_shells_inside, shells_inside};
@@ -28,8 +28,8 @@ use colltrans_convex::setting::error::QueryError;
 
 /// Number of halvings of the distance of a point below a facet.
 const MOST_HALVINGS: i32 = 50;
-/// Maximum number of pairs of facets in a sum, for each cell of the options.
-const PAIRS_PER_CELL: u64 = 256;
+/// Maximum number of boxes and pieces of facets in a sum, for each cell of the options.
+const WORK_PER_CELL: u64 = 16_384;
 /// Maximum number of cells that only bound the box.
 const BOX_CELLS: u32 = 512;
 
@@ -77,8 +77,8 @@ pub struct VolumeOptions {
     /// more.
     pub accuracy: f64,
     /// Maximum number of cells. The default is 100,000. The search also ends when it has clipped 64 facets for each of
-    /// them, and all facets near the common part eight times more. The sum over pairs of facets has at most 256 pairs for
-    /// each of them.
+    /// them, and all facets near the common part eight times more. Each sum over facets examines at most 16,384 boxes and
+    /// pieces of facets for each of them.
     pub max_cells: u32,
 }
 
@@ -195,26 +195,37 @@ pub(super) fn common_part(
     Ok(CommonPart { relation, volume, is_accurate, bounds, point, cells })
 }
 
-/// Computes the common part of two overlapping bodies. If pairs of facets have the volume, cells only bound the box.
+/// Computes the common part of two overlapping bodies. If the sums over facets have the volume, cells only bound the
+/// box.
 fn part_by_facets(scene: &PairFrame, options: VolumeOptions) -> CommonCells {
     let VolumeOptions { accuracy, max_cells } = options;
     let room = common_box(scene);
-    let has_room = room.low.cmplt(room.high).all();
-    let max_pairs = PAIRS_PER_CELL * u64::from(max_cells);
-    let sum = if has_room { common_volume(scene, &room, max_pairs) } else { None };
-    let Some(sum) = sum else { return common_cells(scene, accuracy, max_cells) };
-    let [lower, upper] = sum.bounds;
-    let mut found = if upper - lower <= accuracy * lower {
+    if !room.low.cmplt(room.high).all() {
+        return common_cells(scene, accuracy, max_cells);
+    }
+    let max_work = WORK_PER_CELL * u64::from(max_cells);
+    let (mut volume, mut point, mut is_accurate) = ([0.0, f64::INFINITY], None, false);
+    // Facets in one plane are undecided unless the bodies are displaced.
+    for is_displaced in [false, true] {
+        let Some(sum) = common_volume(scene, &room, is_displaced, max_work) else { break };
+        volume = [volume[0].max(sum.bounds[0]), volume[1].min(sum.bounds[1])];
+        point = point.or(sum.point);
+        is_accurate = volume[1] - volume[0] <= accuracy * volume[0];
+        if is_accurate {
+            break;
+        }
+    }
+    let mut found = if is_accurate {
         box_cells(scene, max_cells.min(BOX_CELLS))
     } else {
         common_cells(scene, accuracy, max_cells)
     };
-    let both = [found.volume[0].max(lower), found.volume[1].min(upper)];
-    debug_assert!(both[0] <= both[1], "{:?} {:?}", found.volume, sum.bounds);
+    let both = [found.volume[0].max(volume[0]), found.volume[1].min(volume[1])];
+    debug_assert!(both[0] <= both[1], "{:?} {volume:?}", found.volume);
     if both[0] <= both[1] {
         found.volume = both;
     }
-    found.point = found.point.or(sum.point);
+    found.point = found.point.or(point);
     found
 }
 

@@ -398,7 +398,7 @@ fn candidate_directions(line: DVec3, normals: &[Vec<DVec3>; 2]) -> Vec<DVec3> {
 }
 
 /// Returns the digits of a number in a base behind the point, in reverse order: a term of the Halton sequence.
-fn radical_inverse(mut number: u32, base: u32) -> f64 {
+pub(super) fn radical_inverse(mut number: u32, base: u32) -> f64 {
     let (mut sum, mut share) = (0.0, 1.0);
     while number > 0 {
         share /= f64::from(base);

@@ -1,19 +1,21 @@
 //! The common part of two solids, their depth, and distances of surfaces, also of bodies inside each other.
 //!
 //! - `surface`: the distance of two surfaces, also if one lies inside the other body, and signed distances of points.
-//! - `common`: how two bodies lie to each other, and their common part, with its volume by `prisms` or `cells`.
+//! - `common`: how two bodies lie to each other, and their common part, with its volume by `arrangement` or `cells`.
 //! - `depth`: the length of the shortest translation that separates two overlapping bodies, from below by `inner` and `cover`.
 //! - `prepared`: one pair for several of these queries.
 //! - `certificate`: proofs of both bounds of the depth, and their verification.
 
+mod arrangement;
 mod cells;
 mod certificate;
 mod common;
 mod cover;
 mod depth;
+mod facet_tree;
 mod inner;
+mod piece;
 mod prepared;
-mod prisms;
 mod surface;
 
 pub use certificate::{DepthCertificate, InnerCore};

@@ -11,7 +11,7 @@ use colltrans_solid::{
 use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::block;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use crate::common::{at, cuboid, solid};
 
@@ -833,6 +833,12 @@ fn volume_of_a_bipyramid_over_a_star_polygon_counts_each_point_once() {
             let [lower, upper] = common(&pair(&double, &room)).volume;
             assert!(lower <= most && lower <= upper, "{corners}: {lower} {upper} {most}");
         }
+        // The outline of the star has corners at two radii.
+        let [step, turn] = [1.0, 2.0].map(|k| k * std::f64::consts::PI / f64::from(corners));
+        let exact = 2.0 / 3.0 * f64::from(corners) * step.sin() * turn.cos() / step.cos();
+        let [lower, upper] = common(&pair(&double, &cuboid([-3.0; 3], [3.0; 3]))).volume;
+        let is_right = lower <= exact * (1.0 + 1e-12) && exact * (1.0 - 1e-12) <= upper;
+        assert!(is_right && upper - lower < 1e-6, "{corners}: {lower} {exact} {upper}");
     }
 }
 
@@ -853,4 +859,81 @@ fn volumes_of_unions_and_open_bodies_count_each_point_once() {
     let open = Solid::from_open_mesh(&vertices, &facets).expect("an open body");
     let found = common(&pair(&open, &room));
     assert!(found.volume[0] <= 7.0 && 7.0 <= found.volume[1] && found.is_accurate, "{found:?}");
+}
+
+/// Three pieces overlap each other, and two of them touch along a face. The volume of their union in a box follows by
+/// inclusion and exclusion. The rotation is rounded.
+#[test]
+fn volumes_of_pieces_that_overlap_and_touch_are_close() {
+    let boxes = [
+        [[0.0, 0.0, 0.0], [3.0, 2.0, 2.0]],
+        [[1.0, 0.5, -1.0], [2.0, 3.0, 1.0]],
+        [[0.5, 1.0, 0.5], [4.0, 2.5, 1.5]],
+        [[3.0, 0.0, 0.0], [4.0, 2.0, 2.0]],
+    ];
+    let pieces = boxes.map(|[low, high]| cuboid(low, high));
+    let union = Solid::from_pieces(&pieces).expect("pieces");
+    for seed in 0..cases(20) {
+        let mut random = Random::new(seed);
+        let [p, q] = [0, 1].map(|_| quarters(&mut random, -4, 16));
+        let room = [p.min(q) - 0.25, p.max(q) + 0.25];
+        let exact: f64 = (1..16_u32)
+            .map(|chosen| {
+                let chosen_boxes = boxes.iter().zip(0..).filter(|(_, k)| chosen >> k & 1 == 1);
+                let [low, high] = chosen_boxes.fold(room, |[low, high], ([from, to], _)| {
+                    [low.max(DVec3::from_array(*from)), high.min(DVec3::from_array(*to))]
+                });
+                let volume = (high - low).max(DVec3::ZERO).element_product();
+                if chosen.count_ones() % 2 == 1 { volume } else { -volume }
+            })
+            .sum();
+        let room = cuboid(room[0], room[1]);
+        let pose = Pose::new(random.rotation(), random.vector()).expect("a pose");
+        for pose in [Pose::IDENTITY, pose] {
+            for [a, b] in [[&union, &room], [&room, &union]] {
+                let both = Pair::new(a.at(pose), b.at(pose)).expect("a pair");
+                let found = common(&both);
+                let [lower, upper] = found.volume;
+                let is_right = lower <= exact + 1e-12 && exact - 1e-12 <= upper;
+                assert!(is_right, "{seed}: {exact} {found:?}");
+                let is_close = upper - lower <= 1e-5 * exact || exact == 0.0;
+                assert!(is_close, "{seed}: {exact} {found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn volume_of_a_rotated_cube_with_tiny_coordinates_is_bounded() {
+    // A corner of the rotated cube has a component below the smallest magnitude, which is set to 0.
+    let s = 2.0_f64.powi(-199);
+    let cube = cuboid(DVec3::splat(-s), DVec3::splat(s));
+    let half = cuboid(DVec3::new(-8.0, -8.0, 0.0) * s, DVec3::splat(8.0) * s);
+    let turned = Pose::new(DQuat::from_rotation_z(30.0_f64.to_radians()), DVec3::ZERO);
+    let both = Pair::new(cube.at(turned.expect("a pose")), half.at(Pose::IDENTITY));
+    let [lower, upper] = common(&both.expect("a pair")).volume;
+    let exact = 4.0 * s.powi(3);
+    assert!(lower <= exact && exact <= upper, "{} {}", lower / exact, upper / exact);
+}
+
+#[test]
+fn volume_of_parts_that_are_flush_along_an_oblique_plane_is_close() {
+    // The roof over the square has a face with the normal (4, 0, 3), in the plane of a face of a larger roof.
+    let roof = |size: f64| {
+        let corners = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 0.0, 4.0]];
+        let points = [0.0, size].map(|y| corners.map(|[x, _, z]| DVec3::new(x, y, z)));
+        ConvexPolyhedron::from_points(&points.concat()).expect("a prism")
+    };
+    let low = ConvexPolyhedron::cuboid(DVec3::new(-1.0, 0.0, -2.0), DVec3::new(1.0, 5.0, 1.0));
+    let low = low.expect("a box");
+    let first = Solid::from_pieces([&roof(4.0), &low]).expect("a solid");
+    let second = Solid::from_pieces([&roof(2.0)]).expect("a solid");
+    let exact = 12.0;
+    for y in [0.0, 0.5, 1.0] {
+        let pose = Pose::from_translation(DVec3::new(0.0, y, 0.0)).expect("a pose");
+        let both = Pair::new(second.at(pose), first.at(Pose::IDENTITY)).expect("a pair");
+        let [lower, upper] = common(&both).volume;
+        assert!(lower <= exact && exact <= upper, "{y}: {lower} {upper}");
+        assert!(upper - lower <= 1e-6 * exact, "{y}: {lower} {upper}");
+    }
 }

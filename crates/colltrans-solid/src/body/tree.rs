@@ -173,7 +173,9 @@ pub fn area_vector([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
 
 /// Builds the tree. Returns its nodes, and the order in which they list the facets.
 pub(super) fn build_tree(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<Node>, Vec<u32>) {
-    let threads = thread::available_parallelism().map_or(1, usize::from);
+    // The number of processors is read from files. That takes longer than a small tree.
+    let is_large = triangles.len() >= 2 * MIN_THREAD_FACETS;
+    let threads = if is_large { thread::available_parallelism().map_or(1, usize::from) } else { 1 };
     build_tree_on(threads, vertices, triangles)
 }
 

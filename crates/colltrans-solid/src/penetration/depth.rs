@@ -25,7 +25,7 @@ use crate::cast::{SolidCast, SolidOptions};
 use crate::pair::pair_scene;
 use crate::solve::hulls::HullPair;
 use crate::solve::nearest::triangle::Corners;
-use crate::solve::overlap::find_overlap;
+use crate::solve::overlap::{Overlap, find_overlap, is_overlap};
 use crate::solve::projected::Projected;
 use crate::solve::scene::PairFrame;
 use crate::solve::steps::SolidSteps;
@@ -57,6 +57,8 @@ const SLIDE_TOLERANCE: f64 = 8.0;
 const SAMPLES: u32 = 48;
 /// Distances from the planes met at which the end of a slide is tested, in noises.
 const CLEARANCES: [f64; 6] = [0.0, 4.0, 16.0, 64.0, 512.0, 4096.0];
+/// Maximum number of pairs of facets that are tested before the search of an overlap.
+const MAX_WITNESSES: usize = 8;
 /// Part of the noise for each unit of length of the radii.
 const NOISE_OF_RADII: f64 = 16.0 * f64::EPSILON;
 /// Relative margin for rounding errors of the depth of hulls.
@@ -170,6 +172,8 @@ pub(super) struct Shortest<'p, 'a> {
     radii: f64,
     pub(super) length: f64,
     translation: DVec3,
+    /// Facets that showed overlaps after other translations, the last one first. They often show the next overlap, too.
+    witnesses: Vec<Overlap>,
 }
 
 impl<'p, 'a> Shortest<'p, 'a> {
@@ -177,7 +181,8 @@ impl<'p, 'a> Shortest<'p, 'a> {
         let [moving, fixed] = pair.bodies.translations.map(|t| t.abs().max_element());
         let radii = pair.moving().radius() + pair.fixed().radius();
         let noise = scene.noise.max(f64::EPSILON * moving.max(fixed)) + NOISE_OF_RADII * radii;
-        Self { pair, noise, radii, length: f64::INFINITY, translation: DVec3::ZERO }
+        let (length, translation, witnesses) = (f64::INFINITY, DVec3::ZERO, Vec::new());
+        Self { pair, noise, radii, length, translation, witnesses }
     }
 
     /// Returns the pair after a translation of the moving body; `None` if that is out of range.
@@ -192,11 +197,29 @@ impl<'p, 'a> Shortest<'p, 'a> {
         let Some(pair) = self.displaced(by) else { return false };
         let moved = pair.bodies.translations[0] - self.pair.bodies.translations[0];
         let length = by.length().max(moved.length()) * (1.0 + ROUNDING);
-        let is_shorter = length < self.length && are_separated(&pair).unwrap_or(false);
+        let is_shorter = length < self.length && self.is_separated(&pair).unwrap_or(false);
         if is_shorter {
             (self.length, self.translation) = (length, by);
         }
         is_shorter
+    }
+
+    /// Checks [`are_separated`] for the pair after a translation.
+    fn is_separated(&mut self, pair: &Pair<'_, Solid>) -> Result<bool, QueryError> {
+        if self.radii > 0.0 {
+            return are_separated(pair);
+        }
+        let scene = pair_scene(pair)?;
+        if let Some(k) = self.witnesses.iter().position(|place| is_overlap(&scene, *place)) {
+            self.witnesses[..=k].rotate_right(1);
+            return Ok(false);
+        }
+        let found = find_overlap(&scene, &mut SolidSteps::default());
+        if let Some(place @ Overlap::Facets(..)) = found {
+            self.witnesses.insert(0, place);
+            self.witnesses.truncate(MAX_WITNESSES);
+        }
+        Ok(found.is_none())
     }
 
     /// Accepts a translation or one that is longer by some noises in a direction.

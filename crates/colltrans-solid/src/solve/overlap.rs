@@ -27,6 +27,7 @@ use super::triangle::Triangle;
 use crate::body::tree::{MAX_LEAF_FACETS, Node};
 use crate::body::wedge::{AxisSigns, Ray, Wedge};
 use crate::solve::steps::SolidSteps;
+use colltrans_convex::body::Aabb;
 use colltrans_kernel::descent::{node_to_split, pair_with_node};
 
 /// The place of an overlap, as positions in [`Solid::triangles`](crate::Solid::triangles).
@@ -288,14 +289,19 @@ fn search_pairs(
     None
 }
 
+/// Finds a pair of triangles of two leaves that satisfies `test`. Triangles are placed only if their boxes are not farther
+/// apart than rounding errors and the minimum gap, because a placed triangle is large.
 fn search_leaves(scene: &PairFrame, a: &Node, b: &Node, test: PairTest) -> Option<(u32, u32)> {
-    let mut facets = a.facets().map(|s| Triangle::new(&scene.moving, s));
-    let of_moving: [Option<Triangle>; MAX_LEAF_FACETS] = std::array::from_fn(|_| facets.next());
+    let (moving, fixed) = (&scene.moving, &scene.fixed);
+    let margin = 4.0 * scene.noise + moving.swell;
+    let mut boxes = a.facets().map(|s| (s, moving.facet_bounds(s).expanded(margin)));
+    let of_moving: [Option<(usize, Aabb)>; MAX_LEAF_FACETS] = std::array::from_fn(|_| boxes.next());
     for t in b.facets() {
-        let g = Triangle::new(&scene.fixed, t);
-        for f in of_moving.iter().flatten() {
-            if (test.holds)(scene, f, &g) {
-                return Some((f.index as u32, t as u32));
+        let bounds = fixed.facet_bounds(t);
+        let near = of_moving.iter().flatten().filter(|(_, around)| around.intersects(&bounds));
+        for &(s, _) in near {
+            if (test.holds)(scene, &Triangle::new(moving, s), &Triangle::new(fixed, t)) {
+                return Some((s as u32, t as u32));
             }
         }
     }

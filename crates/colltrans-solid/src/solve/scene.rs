@@ -259,6 +259,12 @@ impl<'a> PlacedBody<'a> {
         PlacedVertex { local, at, exact, moving: self.moving }
     }
 
+    /// Returns the box of a triangle in the query frame.
+    pub(crate) fn facet_bounds(&self, triangle: usize) -> Aabb {
+        let corners = self.solid.triangles()[triangle];
+        Aabb::from_triangle(corners.map(|v| self.view * self.offset_vertex(v) + self.view_offset))
+    }
+
     pub(crate) fn corners(&self, triangle: usize) -> [PlacedVertex; 3] {
         self.solid.triangles()[triangle].map(|v| self.corner(v))
     }

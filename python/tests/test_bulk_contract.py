@@ -19,6 +19,7 @@ from colltrans import InputError, Solid, clearance_many, motion_clearance_many
 pa = pytest.importorskip("pyarrow")
 pq = pytest.importorskip("pyarrow.parquet")
 
+from servers import s3_bucket  # noqa: E402
 from shards import CORNERS, KEYS, all_ids, ids, queries, shards, table_of, write, write_bodies  # noqa: E402
 
 from colltrans.bulk import Bodies, Options, answer_table, files  # noqa: E402
@@ -412,19 +413,7 @@ def test_meshes_at_urls_are_read(tmp_path: Path, memory: Any, batch: Batch) -> N
 def test_an_s3_server_works_as_source_and_target(
     tmp_path: Path, bodies: Path, monkeypatch: Any
 ) -> None:
-    pytest.importorskip("s3fs")
-    server = pytest.importorskip("moto.server").ThreadedMotoServer(port=0)
-    known = {"ACCESS_KEY_ID": "testing", "SECRET_ACCESS_KEY": "testing"}
-    for name, value in (known | {"DEFAULT_REGION": "us-east-1"}).items():
-        monkeypatch.setenv(f"AWS_{name}", value)
-    server.start()
-    try:
-        _, port = server.get_host_and_port()
-        monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://127.0.0.1:{port}")
-        import s3fs
-
-        system = s3fs.S3FileSystem()
-        system.mkdir("bucket")
+    with s3_bucket(monkeypatch) as system:
         asked = shards(tmp_path / "in", 2, 40)
         for k in range(2):
             system.put_file(str(asked / f"shard-{k}.parquet"), f"bucket/in/shard-{k}.parquet")
@@ -433,8 +422,6 @@ def test_an_s3_server_works_as_source_and_target(
         assert main(words) == 0 and main([*words, "--check"]) == 0
         system.get("bucket/out/", str(tmp_path / "out"), recursive=True)
         assert ids(tmp_path / "out") == all_ids(2, 40)
-    finally:
-        server.stop()
 
 
 def test_features_and_free_directions_become_columns(tmp_path: Path, bodies: Path) -> None:

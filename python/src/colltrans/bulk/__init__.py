@@ -3,13 +3,26 @@
 ``python -m colltrans.bulk QUERIES OUT`` is the program. :func:`answer_table` answers one table, for
 other pipelines (``ray.data.Dataset.map_batches``).
 
-Each module uses only those before it: ``files`` (paths and URLs), ``bodies`` (keys to bodies),
-``reads`` (columns of a question), ``lines`` (JSON to tables), ``table`` (queries to answers),
-``shard`` (file to file), ``engines`` (distribution of shards to processes), ``__main__``.
+Each module uses only those before it: ``files`` (paths and URLs), ``sources`` (footers and row
+groups), ``bodies`` (keys to bodies), ``reads`` (columns of a question), ``lines`` (JSON to tables),
+``table`` (queries to answers), ``shard`` (file to file),
+``engines`` (distribution of shards to processes), ``__main__``.
 """
 
 from colltrans.bulk.bodies import Bodies
+from colltrans.bulk.files import ChangedError, NoRangesError, ReadError
 from colltrans.bulk.shard import Job, Report, answer_shard, check_shard
 from colltrans.bulk.table import Options, answer_table
 
-__all__ = ["Bodies", "Job", "Options", "Report", "answer_shard", "answer_table", "check_shard"]
+__all__ = [
+    "Bodies",
+    "ChangedError",
+    "Job",
+    "NoRangesError",
+    "Options",
+    "ReadError",
+    "Report",
+    "answer_shard",
+    "answer_table",
+    "check_shard",
+]

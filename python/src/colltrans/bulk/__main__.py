@@ -9,20 +9,26 @@ import sys
 import threading
 import time
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from dataclasses import replace
 from pathlib import PurePath
 
-import pyarrow as pa
-import pyarrow.parquet as pq
-
 from colltrans.bulk import engines, files
-from colltrans.bulk.bodies import Bodies
+from colltrans.bulk.bodies import CACHE_BYTES, Bodies, doubled_name
+from colltrans.bulk.files import NoRangesError
 from colltrans.bulk.shard import Job, Report, check_shard
+from colltrans.bulk.sources import Source, packed, parts_of, sources_of
 from colltrans.bulk.table import QUESTIONS, Options
 from colltrans.errors import ColltransError, InputError, as_error
 from colltrans.queries import cores
 
 SUFFIXES = (".parquet", ".jsonl")
+#: Options of tasks of Ray.
+TASKS = {
+    "--task-cpus": "processors and threads of a task (default: 1)",
+    "--task-memory": "bytes of memory that are reserved for a task",
+    "--tasks-in-flight": "maximum number of tasks that wait or run (default: twice as many as the "
+    "processors can run)",
+}
 
 
 def arguments(words: Sequence[str] | None) -> argparse.Namespace:
@@ -53,13 +59,25 @@ def arguments(words: Sequence[str] | None) -> argparse.Namespace:
         "--rows-per-task",
         type=int,
         metavar="N",
-        help="split Parquet files into shards of row groups with at least N rows",
+        help="divide the work into tasks of about N rows: larger Parquet files are split at their "
+        "row groups, smaller files joined",
     )
+    parser.add_argument(
+        "--cache-bytes",
+        type=int,
+        default=CACHE_BYTES,
+        metavar="N",
+        help="maximum size of the bodies that each process keeps (default: %(default)s)",
+    )
+    for option, what in TASKS.items():
+        parser.add_argument(option, type=int, metavar="N", help=f"with --engine ray: {what}")
+    parser.set_defaults(task_cpus=1)
     parser.add_argument("--threads", type=int, default=cores(), help="default: all cores")
     return parser.parse_args(words)
 
 
-def jobs_of(asked: argparse.Namespace) -> list[Job]:
+def tasks_of(asked: argparse.Namespace) -> list[list[Job]]:
+    """Returns the shards of all files, as lists that one process answers."""
     kept = tuple(name for name in asked.keep.split(",") if name)
     options = Options(asked.question, asked.solver, keep_columns=kept, features=asked.features)
     options.reads(asked.solids)
@@ -67,10 +85,40 @@ def jobs_of(asked: argparse.Namespace) -> list[Job]:
     for file, target in pairs:
         if target == file:
             raise InputError(f"{target}: contains the queries; choose another place for answers")
-    jobs = [Job(file, target, options) for file, target in pairs]
-    if asked.rows_per_task is None:
-        return jobs
-    return [part for job in jobs for part in parts_of(job, asked.rows_per_task)]
+    rows = asked.rows_per_task
+    known = sources_of(
+        [
+            file
+            for file, _ in pairs
+            if file.endswith(".parquet") and not (rows is None and files.is_url(file))
+        ]
+    )
+    for error in known.values():
+        if isinstance(error, NoRangesError):
+            print(f"note: one shard, read completely: {error}", file=sys.stderr)
+    jobs = []
+    for file, target in pairs:
+        # A file without a source is one shard, whose report has the reason.
+        source = found if isinstance(found := known.get(file), Source) else None
+        job = Job(file, target, options, source=source)
+        jobs += [job] if source is None or rows is None else cut(job, source, rows)
+    if (doubled := doubled_name([job.answers for job in jobs])) is not None:
+        raise InputError(f"{doubled}: two shards have this file of answers; rename a file")
+    if rows is None:
+        return [[job] for job in jobs]
+    return [[jobs[k] for k in numbers] for numbers in packed((job.rows for job in jobs), rows)]
+
+
+def cut(job: Job, source: Source, rows: int) -> list[Job]:
+    """Divides a file into shards of row groups, each with its own file of answers."""
+    parts = parts_of(source, rows)
+    if len(parts) == 1:
+        return [job]
+    stem = job.answers.removesuffix(".parquet")
+    return [
+        replace(job, answers=f"{stem}-{part:05}-of-{len(parts):05}.parquet", groups=groups)
+        for part, groups in enumerate(parts)
+    ]
 
 
 def shards_of(queries: str, out: str) -> list[tuple[str, str]]:
@@ -95,60 +143,17 @@ def shards_of(queries: str, out: str) -> list[tuple[str, str]]:
     return list(zip(sources, (files.join(out, name) for name in answers), strict=True))
 
 
-def parts_of(job: Job, rows: int) -> Iterator[Job]:
-    """Yields runs of row groups with at least `rows` rows, each with its own file of answers.
-
-    A file that cannot be read stays one shard, because the report of the shard has the reason.
-    """
-    if rows < 1:
-        raise InputError("--rows-per-task: must be at least 1")
-    begins, count = [0], 0
-    counts = row_counts(job) if job.queries.endswith(".parquet") else []
-    for number, group in enumerate(counts):
-        count += group
-        if count >= rows:
-            begins.append(number + 1)
-            count = 0
-    ends = sorted({*begins, len(counts)})
-    if len(ends) < 3:
-        yield job
-        return
-    stem = job.answers.removesuffix(".parquet")
-    for part, groups in enumerate(pairwise(ends)):
-        answers = f"{stem}-{part:05}-of-{len(ends) - 1:05}.parquet"
-        yield Job(job.queries, answers, job.options, groups)
-
-
-def row_counts(job: Job) -> list[int]:
-    """Returns the number of rows of each row group; empty if the file cannot be read."""
-    try:
-        with files.local(job.queries) as file:
-            metadata = metadata_of(job.queries, file)
-    except (ColltransError, OSError):
-        return []
-    return [metadata.row_group(number).num_rows for number in range(metadata.num_row_groups)]
-
-
-def metadata_of(name: str, file: object) -> pq.FileMetaData:
-    try:
-        return pq.read_metadata(file)
-    except pa.ArrowException as error:
-        raise ColltransError(f"{name}: {error}") from error
-
-
 def rows_of(job: Job) -> int:
-    """Returns the number of rows of a shard; 0 if it cannot be read, which its report explains."""
+    """Returns the number of rows of a shard, or 0 if it is unknown."""
+    if job.rows is not None:
+        return job.rows
+    if files.is_url(job.queries) or job.queries.endswith(".parquet"):
+        return 0  # A file is not read for its number of rows alone.
     try:
-        if files.is_url(job.queries):
-            return 0  # Not worth fetching the file.
-        if job.queries.endswith(".parquet"):
-            metadata = metadata_of(job.queries, job.queries)
-            groups = range(*(job.groups or (0, metadata.num_row_groups)))
-            return sum(metadata.row_group(number).num_rows for number in groups)
         with open(job.queries, "rb") as file:
             return sum(1 for line in file if line.strip())
-    except (ColltransError, OSError):
-        return 0
+    except OSError:
+        return 0  # The report of the shard has the reason.
 
 
 class Progress:
@@ -195,21 +200,24 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 def run(asked: argparse.Namespace) -> int:
-    jobs = jobs_of(asked)
-    if asked.threads < 1:
-        raise InputError("--threads: must be at least 1")
+    for name in ("threads", "rows_per_task", "task_cpus", "task_memory", "tasks_in_flight"):
+        if (value := getattr(asked, name)) is not None and value < 1:
+            raise InputError(f"--{name.replace('_', '-')}: must be at least 1")
+    tasks = tasks_of(asked)
+    jobs = [job for task in tasks for job in task]
     queries = files.absolute(asked.queries)
     folder = queries if files.is_folder(queries) else files.parent(queries)
     table = files.absolute(asked.bodies) if asked.bodies else None
-    bodies = Bodies(table, folder, asked.hull, asked.solids)
+    bodies = Bodies(table, folder, asked.hull, asked.solids, asked.cache_bytes)
     progress = Progress(sum(map(rows_of, jobs)))
     if asked.check:
-        return told(engines.local(jobs, bodies, asked.threads, progress, checked), jobs, progress)
+        return told(engines.local(tasks, bodies, asked.threads, progress, checked), jobs, progress)
     bodies.read_table()
     files.clean(job.answers for job in jobs)
     if asked.engine == "local":
-        return told(engines.local(jobs, bodies, asked.threads, progress), jobs, progress)
-    reports = engines.ray(jobs, bodies, asked.threads, asked.address)
+        return told(engines.local(tasks, bodies, asked.threads, progress), jobs, progress)
+    resources = engines.Resources(asked.task_cpus, asked.task_memory, asked.tasks_in_flight)
+    reports = engines.ray(tasks, bodies, asked.threads, asked.address, resources=resources)
     return told(counted(reports, progress), jobs, progress)
 
 

@@ -1,17 +1,26 @@
-"""Bodies by their keys, from a table of bodies or from mesh files."""
+"""Bodies by their keys, from a table of bodies or from mesh files.
+
+The numbers of a table are in a temporary file that is mapped to memory, so that the system can drop
+and reload its pages. Built bodies are in a cache of bounded size, and built again if needed.
+"""
 
 import hashlib
+import tempfile
 import threading
+from bisect import bisect_right
+from collections import OrderedDict
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from colltrans import ConvexPolyhedron, Solid, read
 from colltrans._arrays import Runs
+from colltrans._colltrans import ConvexPolyhedron, Solid, read
 from colltrans.bulk import files
+from colltrans.bulk.files import ReadError
 from colltrans.errors import ColltransError, InputError, as_error
 from colltrans.queries import cores
 
@@ -25,15 +34,66 @@ class Doubled:
     table: str
 
 
-#: A row of a table: its batch and its index there; None after its body is built.
+#: A row of a table: its batch and its index there.
 Row: TypeAlias = tuple[Any, int] | Doubled | None
-#: Approximate number of bytes after which memory of built rows is released.
+#: Approximate number of bytes of a table that are read at once.
 PIECE = 1 << 22
+#: Default maximum size of the cache of bodies in bytes, as of `colltrans batch`.
+CACHE_BYTES = 256 << 20
+#: Number of bytes of an entry of the cache besides the body, and of an error.
+ENTRY = 512
+#: Approximate number of bytes of a built body for each vertex.
+POINT = 200
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The rows of a table of bodies.
+
+    Attributes
+    ----------
+    table : str
+    batches : list of pyarrow.RecordBatch
+        The columns ``vertices`` and ``faces``.
+    starts : list of int
+        The number of the first row of each batch.
+    numbers : dict of str to int
+        The row of each key; -1 for a key that occurs twice.
+    """
+
+    table: str
+    batches: list[Any]
+    starts: list[int]
+    numbers: dict[str, int]
+
+    def get(self, key: str) -> Row:
+        """Returns the row of a key, or None."""
+        number = self.numbers.get(key)
+        if number is None:
+            return None
+        if number < 0:
+            return Doubled(self.table)
+        batch = bisect_right(self.starts, number) - 1
+        return self.batches[batch], number - self.starts[batch]
+
+    def size(self, key: str | None) -> int:
+        """Returns an estimate of the size of a built body in bytes."""
+        row = None if key is None else self.get(key)
+        if row is None or isinstance(row, Doubled):
+            return ENTRY
+        lists = row[0].column("vertices").slice(row[1], 1)
+        return ENTRY + POINT * (len(lists.flatten()) if hasattr(lists, "flatten") else 0)
+
+    def total_size(self) -> int:
+        """Returns an estimate of the size of all built bodies in bytes."""
+        lists = (batch.column("vertices") for batch in self.batches)
+        points = sum(len(column.flatten()) for column in lists if hasattr(column, "flatten"))
+        return ENTRY * len(self.numbers) + POINT * points
 
 
 @dataclass
 class Bodies:
-    """Bodies by their keys, each built once in a process, several at a time.
+    """Bodies by their keys, built when they are needed, several at a time.
 
     Attributes
     ----------
@@ -46,26 +106,34 @@ class Bodies:
         Whether to take the convex hull of all meshes.
     solids : bool
         Whether to treat all bodies as solids, which need not be convex. Each body then needs faces.
+    cache_bytes : int
+        Maximum size of the built bodies that are kept. The bodies of the rows that are being
+        answered are held in addition.
     """
 
     table: str | None = None
     folder: str = "."
     hull: bool = False
     solids: bool = False
-    _built: dict[str, Body] = field(default_factory=dict, repr=False)
+    cache_bytes: int = CACHE_BYTES
+    _cache: OrderedDict[str, Body] = field(default_factory=OrderedDict, repr=False)
+    _held: int = field(default=0, repr=False)
+    _total: int | None = field(default=None, repr=False)
     _digests: dict[str, str] = field(default_factory=dict, repr=False)
-    _rows: dict[str, Row] | None = field(default=None, repr=False)
+    _rows: Rows | None = field(default=None, repr=False)
+    _shared: bool = field(default=False, repr=False)
     _lock: threading.RLock = field(default_factory=threading.RLock, repr=False)
 
     def __post_init__(self) -> None:
         if self.hull and self.solids:
             raise InputError("hull and solids are both set; set only one of them")
+        if self.cache_bytes < 0:
+            raise InputError(f"cache_bytes: {self.cache_bytes} is not a number of bytes from 0")
 
     def __getstate__(self) -> dict[str, Any]:
         kept = {k: v for k, v in self.__dict__.items() if k != "_lock"}
-        if self._rows is not None and None in self._rows.values():
-            kept["_rows"] = None  # Rows of built bodies are gone: the table is read again.
-        return {**kept, "_built": {}}
+        rows = self._rows if self._shared else None
+        return {**kept, "_cache": OrderedDict(), "_held": 0, "_rows": rows}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, _lock=threading.RLock())
@@ -74,28 +142,43 @@ class Bodies:
         """Returns the bodies of these keys, or the error of a body that cannot be built."""
         keys = list(keys)
         with self._lock:
-            missing = [key for key in dict.fromkeys(keys) if key not in self._built]
+            found = {key: self._cache[key] for key in keys if key in self._cache}
+            for key in found:
+                self._cache.move_to_end(key)
+            missing = [key for key in dict.fromkeys(keys) if key not in found]
             if missing:
-                rows, gone = self.read_table(), 0
+                rows = self.read_table()
                 # Bodies are built without the interpreter's lock.
                 with ThreadPoolExecutor(min(len(missing), cores())) as pool:
-                    for taken in pool.map(lambda key: self._make(key, rows), missing):
-                        gone += taken
-                        if gone > PIECE:
-                            gone = 0
-                            _release()
-            return [self._built[key] for key in keys]
+                    for key, body in zip(
+                        missing, pool.map(lambda key: self._build(key, rows), missing), strict=True
+                    ):
+                        found[key] = body
+                        self._keep(key, body)
+            return [found[key] for key in keys]
 
-    def _make(self, key: Any, rows: dict[str, Row]) -> int:
-        """Builds a body and releases its row; returns the approximate size of the row in bytes."""
-        body = self._built[key] = self._build(key, rows)
-        if rows.get(key) is None or isinstance(rows[key], Doubled):
-            return 0
-        rows[key] = None
-        return 0 if isinstance(body, ColltransError) else body.nbytes // 4
+    def _keep(self, key: Any, body: Body) -> None:
+        """Adds a body to the cache, and removes those that have not been used for longest."""
+        self._cache[key] = body
+        self._held += _size_of(body)
+        while self._held > self.cache_bytes:
+            _, oldest = self._cache.popitem(last=False)
+            self._held -= _size_of(oldest)
 
-    def read_table(self) -> dict[str, Row]:
-        """Returns the rows of the table by their keys; empty without a table.
+    def all_fit(self) -> bool:
+        """Checks whether the cache can hold all bodies; mesh files are assumed to fit."""
+        rows = self.read_table()
+        if self._total is None:
+            self._total = rows.total_size()
+        return self._total <= self.cache_bytes
+
+    def sizes(self, keys: Iterable[Any]) -> list[int]:
+        """Returns estimates of the sizes of built bodies of the table, in bytes."""
+        rows = self.read_table()
+        return [rows.size(key) for key in keys]
+
+    def read_table(self) -> Rows:
+        """Returns the rows of the table; none without a table.
 
         Raises
         ------
@@ -103,9 +186,14 @@ class Bodies:
             The table cannot be read.
         """
         with self._lock:
-            if self._rows is None:
-                self._rows = {} if self.table is None else rows_of(self.table)
-                _release()
+            if self._rows is not None:
+                return self._rows
+            if self.table is None:
+                self._rows = Rows("", [], [], {})
+                return self._rows
+            with files.local(self.table) as file:
+                self._rows = rows_of(self.table, file)
+                self._digests[self.table] = files.digest(file)
             return self._rows
 
     def share(self) -> None:
@@ -117,6 +205,7 @@ class Bodies:
         with self._lock:
             self.read_table()
             self.digest(())
+            self._shared = True
 
     def digest(self, keys: Iterable[Any]) -> str:
         """Returns a hash of the sources of these bodies."""
@@ -131,11 +220,11 @@ class Bodies:
             try:
                 with files.local(path) as file:
                     self._digests[path] = files.digest(file)
-            except (OSError, ValueError, InputError) as error:  # Or no path at all.
+            except (OSError, ValueError, ColltransError) as error:  # Or no path at all.
                 return f"unreadable: {error}"
         return self._digests[path]
 
-    def _build(self, key: Any, rows: dict[str, Row]) -> Body:
+    def _build(self, key: Any, rows: Rows) -> Body:
         try:
             if not isinstance(key, str):
                 raise InputError("the key of a body is not a text")
@@ -144,7 +233,10 @@ class Bodies:
             with files.local(files.join(self.folder, key)) as file:
                 return Solid.read(file) if self.solids else read(file, hull=self.hull)
         except BaseException as error:
-            return as_error(error, str(key))
+            told = as_error(error, str(key))
+            # Frames of the traceback would keep their arrays in memory.
+            told.__cause__ = told.__context__ = None
+            return told.with_traceback(None)
 
     def _of_row(self, found: Row, key: str) -> Body:
         if found is None:
@@ -186,28 +278,40 @@ def _decoded(text: bytes | None) -> str | None:
         return None
 
 
-def _release() -> None:
-    """Releases memory that Arrow caches; after reading a table it is as large as the table."""
+def rows_of(table: str, file: Path) -> Rows:
+    """Copies a table to a temporary file that is mapped to memory; returns its rows."""
     import pyarrow as pa
 
-    pa.default_memory_pool().release_unused()
-
-
-def rows_of(table: str) -> dict[str, Row]:
-    """Returns the batch and row of each key of a table."""
-    import pyarrow as pa
-
-    found: dict[str, Row] = {}
+    numbers: dict[str, int] = {}
+    count = 0
     try:
-        with files.local(table) as file:
+        # The map outlives the name of the file, except on Windows, where the file remains.
+        with tempfile.TemporaryDirectory(prefix="colltrans-", ignore_cleanup_errors=True) as folder:
+            copy, writer = Path(folder, "bodies.arrow"), None
             for batch in _batches(file, table):
-                for row, key in enumerate(texts_of(batch.column("key"))):
-                    if key is None:
-                        continue  # No query can name it.
-                    found[key] = Doubled(table) if key in found else (batch, row)
-    except pa.ArrowException as error:
-        raise ColltransError(f"{table}: {error}") from error
-    return found
+                keys, batch = batch.column("key"), batch.drop_columns(["key"])
+                for number, key in enumerate(texts_of(keys), count):
+                    if key is not None:  # No query can name it.
+                        numbers[key] = -1 if key in numbers else number
+                count += batch.num_rows
+                writer = writer or pa.ipc.new_file(copy, batch.schema)
+                writer.write_batch(batch)
+            if writer is None:
+                return Rows(table, [], [], {})
+            writer.close()
+            mapped = pa.ipc.open_file(pa.memory_map(str(copy)))
+            batches = [mapped.get_batch(k) for k in range(mapped.num_record_batches)]
+    except (pa.ArrowException, OSError) as error:
+        raise ReadError(f"{table}: {error}") from error
+    # Arrow caches as much memory as it used for the table.
+    pa.default_memory_pool().release_unused()
+    starts = np.cumsum([0, *(batch.num_rows for batch in batches)])[:-1]
+    return Rows(table, batches, starts.tolist(), numbers)
+
+
+def _size_of(body: Body) -> int:
+    """Returns the approximate number of bytes of an entry of the cache."""
+    return ENTRY if isinstance(body, ColltransError) else ENTRY + body.nbytes
 
 
 def _batches(file: Any, table: str) -> Iterator[Any]:

@@ -12,6 +12,7 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -21,12 +22,16 @@ import pyarrow.parquet as pq
 
 from colltrans.bulk import files, lines
 from colltrans.bulk.bodies import Bodies, texts_of
+from colltrans.bulk.files import ReadError
 from colltrans.bulk.reads import SIDES
+from colltrans.bulk.sources import Source, chunks_of, ranges_of
 from colltrans.bulk.table import Options, answer_table, column_of
 from colltrans.errors import ColltransError
 
 #: Number of rows in memory at once.
 BATCH = 65_536
+#: Number of bytes of a column that are read at once.
+BUFFER = 1 << 16
 #: Metadata key of the fingerprint of the query.
 FINGERPRINT = b"colltrans"
 #: Metadata key of the SHA-256 of the file with zeros in place of the digest.
@@ -45,12 +50,21 @@ class Job:
     options : Options
     groups : tuple of int or None
         For a Parquet file the half-open range of its row groups; None for all.
+    source : Source or None
+        The footer of a Parquet file, if it is known. Of a URL, row groups are read by ranges only
+        with their footer; without it the complete file is read.
     """
 
     queries: str
     answers: str
     options: Options
     groups: tuple[int, int] | None = None
+    source: Source | None = None
+
+    @property
+    def rows(self) -> int | None:
+        """int or None: The number of rows, if the footer is known."""
+        return None if self.source is None else self.source.rows(self.groups)
 
 
 @dataclass(frozen=True)
@@ -66,6 +80,8 @@ class Report:
         Whether the shard had been answered before.
     failure : str or None
         The reason if the shard has no answers.
+    error : str or None
+        The name of the class of the exception that is this reason, for example ``"ChangedError"``.
     """
 
     job: Job
@@ -73,6 +89,7 @@ class Report:
     errors: int = 0
     skipped: bool = False
     failure: str | None = None
+    error: str | None = None
 
 
 def answer_shard(
@@ -93,16 +110,21 @@ def answer_shard(
 
     Raises
     ------
+    ReadError
+        The queries cannot be read.
+    ChangedError
+        The queries have changed since their footer was read, or while they were answered.
     ColltransError
-        The queries cannot be read, or the answers cannot be written; the message has their names.
+        The queries have a wrong column, or the answers cannot be written. All messages have the
+        names of the files.
     """
-    with _named(job), files.local(job.queries) as queries:
+    with _named(job), _opened(job) as (queries, stamp):
         fingerprint = _fingerprint(job, queries, bodies)
         done = _finished(job, fingerprint)
         if done.failure is None:
             progress(done.rows)
             return done
-        with files.made(job.answers) as file:
+        with files.made(job.answers) as file, files.steady(job.queries, stamp):
             rows, errors = _write(file, job, queries, bodies, fingerprint, progress)
             _seal(file)
         return Report(job, rows, errors)
@@ -121,17 +143,31 @@ def check_shard(job: Job, bodies: Bodies) -> Report:
     Report
         Its ``failure`` is the reason if they are not.
     """
-    with _named(job), files.local(job.queries) as queries:
+    with _named(job), _opened(job) as (queries, _):
         return _finished(job, _fingerprint(job, queries, bodies))
 
 
 @contextmanager
+def _opened(job: Job) -> Iterator[tuple[Path, files.Stamp]]:
+    """Provides a local file with the bytes of a shard, and the state of its source."""
+    source = job.source
+    stamp = files.stamp_of(job.queries) if source is None else source.stamp
+    ranges = None if source is None else ranges_of(source.footer, job.groups)
+    with files.part(job.queries, stamp, ranges) as queries:
+        yield queries, stamp
+
+
+@contextmanager
 def _named(job: Job) -> Iterator[None]:
-    """Adds the name of the shard to the message of an exception."""
+    """Adds the name of the shard to the message of an exception, unless it begins with it."""
     try:
         yield
-    except (ColltransError, pa.ArrowException, OSError) as error:
-        raise ColltransError(f"{job.queries}: {error}") from error
+    except ColltransError as error:
+        if str(error).startswith(job.queries):
+            raise
+        raise type(error)(f"{job.queries}: {error}") from error
+    except (pa.ArrowException, OSError) as error:
+        raise ReadError(f"{job.queries}: {error}") from error
 
 
 def _write(
@@ -237,8 +273,8 @@ def _fingerprint(job: Job, queries: Path, bodies: Bodies) -> str:
     options = {k: v for k, v in asdict(job.options).items() if k != "threads"}
     keys = set() if bodies.table else _keys(queries, job, bodies)
     told = {
-        "version": version("colltrans"),
-        "queries": _digest_of(queries, job.groups),
+        "version": _version(),
+        "queries": _digest_of(queries, job),
         "bodies": bodies.digest(keys),
         "hull": bodies.hull,
         "solids": bodies.solids,
@@ -247,20 +283,25 @@ def _fingerprint(job: Job, queries: Path, bodies: Bodies) -> str:
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
-def _digest_of(queries: Path, groups: tuple[int, int] | None) -> str:
-    """Returns the SHA-256 of a file, or of these row groups with their schema."""
-    if groups is None:
+@cache
+def _version() -> str:
+    """Returns the version of this package, which takes a millisecond to find."""
+    return version("colltrans")
+
+
+def _digest_of(queries: Path, job: Job) -> str:
+    """Returns the SHA-256 of a file, or of its row groups in the shard with their schema."""
+    if job.groups is None:
         return files.digest(queries)
-    with pq.ParquetFile(queries) as parquet:
-        metadata, found = parquet.metadata, hashlib.sha256(str(parquet.schema_arrow).encode())
+    with _parquet(queries, job) as parquet:
+        footer, found = parquet.metadata, hashlib.sha256(str(parquet.schema_arrow).encode())
     with queries.open("rb") as file:
-        for number in range(*groups):
-            group = metadata.row_group(number)
-            for chunk in map(group.column, range(group.num_columns)):
-                pages = chunk.dictionary_page_offset if chunk.has_dictionary_page else None
-                file.seek(pages or chunk.data_page_offset)
-                found.update(file.read(chunk.total_compressed_size))
-    return f"{groups}: {found.hexdigest()}"
+        for number in range(*job.groups):
+            for begin, end in chunks_of(footer.row_group(number)):
+                file.seek(begin)
+                for start in range(begin, end, files.BLOCK):
+                    found.update(file.read(min(files.BLOCK, end - start)))
+    return f"{job.groups}: {found.hexdigest()}"
 
 
 def _keys(queries: Path, job: Job, bodies: Bodies) -> set[str]:
@@ -275,15 +316,30 @@ def _keys(queries: Path, job: Job, bodies: Bodies) -> set[str]:
 def _batches(
     queries: Path, job: Job, bodies: Bodies, columns: list[str] | None = None
 ) -> Iterator[Any]:
-    """Yields the queries of a file in batches; an empty file yields one empty batch."""
+    """Yields the queries of a shard in batches; a shard without rows yields one empty batch."""
     try:
         if queries.suffix != ".parquet":
             yield from lines.tables_of(queries, job.options.reads(bodies.solids), BATCH)
             return
-        with pq.ParquetFile(queries, page_checksum_verification=True) as file:
-            groups = range(*(job.groups or (0, file.num_row_groups)))
-            if file.metadata.num_rows == 0:
+        with _parquet(queries, job) as file:
+            groups, empty = range(*(job.groups or (0, file.num_row_groups))), True
+            for batch in file.iter_batches(BATCH, row_groups=groups, columns=columns):
+                yield batch
+                empty = False
+            if empty:
                 yield file.schema_arrow.empty_table()
-            yield from file.iter_batches(BATCH, row_groups=groups, columns=columns)
     except (OSError, pa.ArrowException) as error:
-        raise ColltransError(f"cannot read the queries: {error}") from error
+        raise ReadError(f"cannot read the queries: {error}") from error
+
+
+def _parquet(queries: Path, job: Job) -> Any:
+    """Opens a file of queries, with its footer if that is known."""
+    footer = None if job.source is None else job.source.footer
+    return pq.ParquetFile(
+        queries,
+        metadata=footer,
+        # Large row groups are read in pieces.
+        buffer_size=BUFFER,
+        pre_buffer=False,
+        page_checksum_verification=True,
+    )

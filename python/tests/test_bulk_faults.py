@@ -54,20 +54,22 @@ def test_a_panic_is_the_error_of_its_body(tmp_path: Path, monkeypatch: Any) -> N
     assert told[1] is None and told[3] is None
 
 
-def test_a_panic_is_the_error_of_its_shard(tmp_path: Path, monkeypatch: Any, capsys: Any) -> None:
+def test_a_lack_of_memory_is_the_error_of_its_shard(
+    tmp_path: Path, monkeypatch: Any, capsys: Any
+) -> None:
     table, asked = write_bodies(tmp_path / "bodies.parquet"), shards(tmp_path / "in", 3, 20)
     write(asked / "shard-1.parquet", queries(1, 21))
     known = bulk_table.QUESTIONS["range"]
 
     def panics(*sides: Any, **arguments: Any) -> Any:
         if len(arguments["moving_index"]) == 21:
-            raise Panic("index out of bounds")
+            raise MemoryError("no memory left")
         return known(*sides, **arguments)
 
     monkeypatch.setitem(bulk_table.QUESTIONS, "range", panics)
     assert run(asked, tmp_path / "out", table) == 2
     found = capsys.readouterr()
-    assert "shard-1.parquet: Panic: index out of bounds" in found.err
+    assert "shard-1.parquet: MemoryError: no memory left" in found.err
     assert "40 rows in 2 shards" in found.out and "1 shards FAILED" in found.out
 
 

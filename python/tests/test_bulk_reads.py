@@ -1,5 +1,6 @@
 """Tests reads of queries: only the needed bytes, repeated after faults, of one version."""
 
+import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -349,6 +350,30 @@ def test_two_shards_with_one_name_are_refused(tmp_path: Path, bodies: Path, caps
     assert "a-00000-of-00002.parquet: two shards have this file" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
     assert main(words) == 0
+
+
+def test_errors_of_rows_have_types(tmp_path: Path, bodies: Path) -> None:
+    columns = queries(4, 100)
+    columns["moving"][3], columns["fixed"][5], columns["moving"][7] = "broken", "nothing", None
+    columns["moving_pose"][9, 0] = np.nan
+    columns["moving_pose"][11, 3:] = 2
+    columns["direction"][13] = 0
+    write(tmp_path / "queries.parquet", columns)
+    out = tmp_path / "answers.parquet"
+    assert main([str(tmp_path / "queries.parquet"), str(out), "--bodies", str(bodies)]) == 5
+    table = pq.read_table(out)
+    assert {i: e for i, e in enumerate(table["error"].to_pylist()) if e} == {
+        3: "BuildError",
+        5: "InputError",
+        7: "InputError",
+        9: "PoseError",
+        11: "PoseError",
+        13: "QueryError",
+    }
+    lines = [{"moving": "none.off", "fixed": "none.off", "direction": [0, 0, 1]}]
+    (tmp_path / "queries.jsonl").write_text("\n".join([*map(json.dumps, lines), "{"]) + "\n")
+    assert main([str(tmp_path / "queries.jsonl"), str(out)]) == 5
+    assert pq.read_table(out)["error"].to_pylist() == ["MissingFileError", "InputError"]
 
 
 def test_a_small_cache_changes_no_answer(tmp_path: Path) -> None:

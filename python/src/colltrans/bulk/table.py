@@ -1,5 +1,7 @@
 """Answers a table of queries with a table of answers."""
 
+import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -12,7 +14,7 @@ from colltrans.bulk.lines import REFUSED
 from colltrans.bulk.reads import EVERYTHING, OF_CONVEX, OF_SOLIDS, SCREWS, SIDES, Reads
 from colltrans.columns import Table
 from colltrans.directions import free_directions_many
-from colltrans.errors import InputError
+from colltrans.errors import ColltransError, InputError, RoundedPoseWarning, as_error
 from colltrans.many import cast_many, clearance_many, contact_range_many
 from colltrans.motions import motion_clearance_many, motion_many
 from colltrans.pairs import depth_many, distance_many, within_many
@@ -37,6 +39,10 @@ FEATURED = (*CASTS, "distance", "motion", "motion_clearance")
 MOTIONS = ("motion", "motion_clearance")
 #: A screw without motion, for rows that have none.
 REST = (0, 0, 0, 0, 0, 1, 0, 0)
+#: A pose without rotation and translation.
+IDENTITY = (0, 0, 0, 0, 0, 0, 1)
+#: The type of the column ``error``.
+NAMES = pa.dictionary(pa.int8(), pa.string())
 
 
 @dataclass(frozen=True)
@@ -106,8 +112,9 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
     Returns
     -------
     pyarrow.Table
-        The column ``id`` if there is one, kept columns, and the columns of :meth:`Table.to_arrow`.
-        A row that cannot be answered has the outcome *error* and a message.
+        The column ``id`` if there is one, kept columns, the columns of :meth:`Table.to_arrow`, and
+        ``error``. A row that cannot be answered has the outcome *error*, a message, and the name of
+        the class of its exception as ``error``, for example ``"BuildError"`` for a body.
 
     Raises
     ------
@@ -120,10 +127,8 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
     names = [name for name in queries.schema.names if name != REFUSED]
     if (stray := reads.stray(names)) is not None:
         raise InputError(stray)
-    answers = _answers(queries, bodies, options).to_arrow()
-    if REFUSED in queries.schema.names:
-        told = pc.coalesce(column_of(queries, REFUSED), answers["message"])
-        answers = answers.set_column(answers.num_columns - 1, "message", told)
+    parts = [_answered(part, bodies, options) for part in _fitting(queries, bodies)]
+    answers = pa.concat_tables(parts) if len(parts) > 1 else parts[0]
     assert answers.num_rows == queries.num_rows
     kept = names if EVERYTHING in reads.kept else reads.kept
     for name in reversed([*(["id"] if "id" in names else []), *(n for n in kept if n != "id")]):
@@ -133,18 +138,155 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
     return answers
 
 
+def failed_table(queries: Any, error: ColltransError, bodies: Bodies, options: Options) -> Any:
+    """Returns the answers of queries that all fail with the same error.
+
+    Columns ``id`` and kept columns are copied if the queries have them once.
+    """
+    names = queries.schema.names
+    told = _failed(queries.num_rows, error, bodies, options)
+    kept = names if EVERYTHING in options.keep_columns else ("id", *options.keep_columns)
+    known = (*told.schema.names, REFUSED)
+    copied = [name for name in kept if names.count(name) == 1 and name not in known]
+    for name in reversed(copied):
+        told = told.add_column(0, name, queries.column(name))
+    return told
+
+
+def _failed(n: int, error: ColltransError, bodies: Bodies, options: Options) -> Any:
+    """Returns the answers of `n` rows with the same error, without kept columns."""
+    none = pa.table({side: pa.nulls(0, pa.string()) for side in SIDES} | _blank(options))
+    schema = _answered(none, bodies, options).schema
+    columns = {field.name: pa.nulls(n, field.type) for field in schema}
+    outcomes = pa.array(["error"] * n, pa.string()).dictionary_encode()
+    columns["outcome"] = outcomes.cast(schema.field("outcome").type)
+    columns["message"] = pa.array([str(error)] * n, pa.string())
+    columns["error"] = _names(dict.fromkeys(range(n), type(error).__name__), n)
+    return pa.table(columns)
+
+
+def _blank(options: Options) -> dict[str, Any]:
+    """Returns the columns that a question needs besides the bodies, without rows."""
+    if options.question in CASTS:
+        return {"direction": pa.nulls(0, pa.list_(pa.float64(), 3))}
+    if options.question == "within":
+        return {"length": pa.nulls(0, pa.float64())}
+    if options.question in MOTIONS:
+        return {SCREWS[0]: pa.nulls(0, pa.list_(pa.float64(), 8))}
+    return {}
+
+
+def _fitting(queries: Any, bodies: Bodies) -> Iterator[Any]:
+    """Yields consecutive rows whose bodies together have about the size of the cache at most."""
+    if bodies.all_fit():
+        yield queries
+        return
+    keys, indices = _keys_of(queries)
+    sizes = bodies.sizes(keys)
+    if sum(sizes) <= bodies.cache_bytes:
+        yield queries
+        return
+    begin, held, size = 0, set[int](), 0
+    for row, pair in enumerate(zip(*indices, strict=True)):
+        more = {which for which in pair if which not in held}
+        if (
+            needed := sum(sizes[which] for which in more)
+        ) + size > bodies.cache_bytes and row > begin:
+            yield queries.slice(begin, row - begin)
+            begin, held, size = row, set(), 0
+            more, needed = set(pair), sum(sizes[which] for which in set(pair))
+        held |= more
+        size += needed
+    yield queries.slice(begin)
+
+
+def _keys_of(queries: Any) -> tuple[list[str | None], list[Any]]:
+    """Returns the keys of all bodies, and for both sides the index of the key of each row."""
+    keys: list[str | None] = [None]
+    indices = []
+    for side in SIDES:
+        of_side, index = _encoded(queries, side)
+        indices.append((index + len(keys)).tolist() if len(of_side) else [0] * len(index))
+        keys += of_side
+    return keys, indices
+
+
+def _answered(queries: Any, bodies: Bodies, options: Options) -> Any:
+    """Answers rows. A panic of the extension is the error of the rows that cause it.
+
+    These rows are found by bisection.
+    """
+    try:
+        return _told(queries, _answers(queries, bodies, options))
+    except (ColltransError, MemoryError):
+        raise
+    except BaseException as panic:
+        error, n = as_error(panic, "a fault of this package"), queries.num_rows
+        if n == 0:
+            raise error from panic
+    if n == 1:
+        return _failed(1, error, bodies, options)
+    halves = (queries.slice(0, n // 2), queries.slice(n // 2))
+    return pa.concat_tables([_answered(half, bodies, options) for half in halves])
+
+
+def _told(queries: Any, found: Table[Any]) -> Any:
+    """Converts answers to a table with the columns ``error`` and ``message`` at its end."""
+    answers, errors = found.to_arrow(), _errors(found)
+    if REFUSED in queries.schema.names:
+        refused = column_of(queries, REFUSED)
+        if refused.null_count < len(refused):
+            told = pc.coalesce(refused, answers["message"])
+            answers = answers.set_column(answers.num_columns - 1, "message", told)
+            rows = np.flatnonzero(np.asarray(refused.is_valid()))
+            errors |= dict.fromkeys(rows.tolist(), InputError.__name__)
+    return answers.add_column(answers.num_columns - 1, "error", _names(errors, len(found)))
+
+
+def _errors(found: Table[Any]) -> dict[int, str]:
+    """Returns the name of the class of the error of each row without an answer.
+
+    The extension reports messages only, so the first row with each message is queried again.
+    """
+    known: dict[str, str] = {}
+    names = {}
+    for row, message in found.errors.items():
+        if message not in known:
+            known[message] = _error_of(found, row)
+        names[row] = known[message]
+    return names
+
+
+def _error_of(found: Table[Any], row: int) -> str:
+    queries = found._queries
+    for bodies, index in zip(queries.bodies, queries.indices, strict=True):
+        which = 0 if index is None else int(index[row])
+        if which >= 0 and isinstance(bodies[which], Exception):
+            return type(bodies[which]).__name__
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RoundedPoseWarning)
+            queries.ask(type(found)._question, row)
+    except ColltransError as error:
+        return type(error).__name__
+    return ColltransError.__name__
+
+
+def _names(errors: dict[int, str], n: int) -> Any:
+    """Returns the column ``error``."""
+    if not errors:
+        return pa.nulls(n, NAMES)
+    return pa.array(map(errors.get, range(n)), pa.string()).dictionary_encode().cast(NAMES)
+
+
 def _answers(queries: Any, bodies: Bodies, options: Options) -> Table[Any]:
     """Converts the columns to arrays and runs the query."""
     names = queries.schema.names
     arguments: dict[str, Any] = {}
     sides: list[Any] = []
     for side in SIDES:
-        keys = column_of(queries, side).dictionary_encode()
-        if isinstance(keys, pa.ChunkedArray):
-            keys = keys.combine_chunks()
-        index = keys.indices.fill_null(-1).to_numpy(zero_copy_only=False)
-        sides.append(bodies.get(texts_of(keys.dictionary)))
-        arguments[f"{side}_index"] = index.astype(np.int64)
+        keys, arguments[f"{side}_index"] = _encoded(queries, side)
+        sides.append(bodies.get(keys))
         if f"{side}_pose" in names:
             arguments[f"{side}_pose"] = _vectors(queries, f"{side}_pose", (7, 3))
     if options.question in MOTIONS:
@@ -164,6 +306,15 @@ def _answers(queries: Any, bodies: Bodies, options: Options) -> Table[Any]:
         arguments["features"] = True
     columns: Table[Any] = QUESTIONS[options.question](*sides, **arguments, threads=options.threads)
     return columns
+
+
+def _encoded(queries: Any, side: str) -> tuple[list[str | None], Any]:
+    """Returns the distinct keys of a side, and the index of the key of each row; -1 for a null."""
+    keys = column_of(queries, side).dictionary_encode()
+    if isinstance(keys, pa.ChunkedArray):
+        keys = keys.combine_chunks()
+    index = keys.indices.fill_null(-1).to_numpy(zero_copy_only=False)
+    return texts_of(keys.dictionary), index.astype(np.int64)
 
 
 def _motion(queries: Any) -> dict[str, Any]:
@@ -239,18 +390,25 @@ def _vectors(queries: Any, name: str, widths: tuple[int, ...]) -> np.ndarray[Any
         flat = column.flatten()
         if flat.null_count == 0:
             return np.asarray(flat, dtype=float).reshape(-1, kind.list_size)
-    rows = column.to_pylist()
-    width = next(
-        (w for w in widths if any(r is not None and len(r) == w for r in rows)), widths[-1]
-    )
-    table = np.full((len(rows), width), np.nan)
-    for place, row in zip(table, rows, strict=True):
-        if row is None and name in SCREWS:
-            place[:] = REST
-        elif row is None and name != "direction":
-            place[:] = (0, 0, 0, 0, 0, 0, 1)[:width]
-        elif row is not None and len(row) == width and None not in row:
-            place[:] = row
-        elif row is not None and len(row) == 3 and width == 7 and None not in row:
-            place[:] = (*row, 0, 0, 0, 1)
+    if pa.types.is_null(kind):
+        column = column.cast(pa.list_(pa.float64()))
+    lengths = pc.list_value_length(column).fill_null(-1).to_numpy(zero_copy_only=False)
+    width = next((w for w in widths if (lengths == w).any()), widths[-1])
+    numbers = column.flatten()
+    flat = np.asarray(numbers.to_numpy(zero_copy_only=False), dtype=float)
+    starts = np.cumsum(np.maximum(lengths, 0)) - np.maximum(lengths, 0)
+    if (lengths == width).all():
+        table = flat.reshape(-1, width)
+    else:
+        table = np.full((len(lengths), width), np.nan)
+        for length in {width, 3} if width == 7 else {width}:
+            rows = np.flatnonzero(lengths == length)
+            table[rows, :length] = flat[starts[rows, None] + np.arange(length)]
+            table[rows, length:] = IDENTITY[length:width]
+        if name != "direction":
+            table[lengths == -1] = REST if name in SCREWS else IDENTITY[:width]
+    if numbers.null_count:
+        table = table.copy()
+        holes = np.asarray(numbers.is_null()).nonzero()[0]
+        table[np.searchsorted(starts + np.maximum(lengths, 0), holes, side="right")] = np.nan
     return table

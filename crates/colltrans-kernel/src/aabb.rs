@@ -4,7 +4,11 @@ use glam::DVec3;
 
 /// An axis-aligned box: the points `x` with `low <= x <= high`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Aabb {
     /// The smallest coordinates.
     pub low: DVec3,

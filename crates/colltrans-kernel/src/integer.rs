@@ -260,7 +260,7 @@ impl<const N: usize> Integer<N> {
 
 /// Decomposes a number into mantissa and exponent: `|x| = mantissa 2^exponent`.
 #[inline]
-fn mantissa_and_exponent(x: f64) -> (u64, i32) {
+pub(crate) fn mantissa_and_exponent(x: f64) -> (u64, i32) {
     let bits = x.to_bits();
     let fraction = bits & ((1 << 52) - 1);
     let exponent = (bits >> 52 & 0x7ff) as i32;

@@ -1,7 +1,7 @@
 //! Arithmetic, geometry and data structures that all bodies and all searches use.
 //!
 //! - Exact arithmetic: [`range`] (accepted numbers), [`error_free`], [`double`], [`real`], [`integer`],
-//!   [`extended`].
+//!   [`big`], [`extended`].
 //! - Signs: [`predicates`], [`orientation`], [`volume`].
 //! - Bounds on rounding errors: [`noise`], [`height_bounds`], [`bounded`].
 //! - Placement: [`angle`], [`pose`], [`motion`].
@@ -15,6 +15,8 @@
 pub mod aabb;
 #[doc(hidden)]
 pub mod angle;
+#[doc(hidden)]
+pub mod big;
 pub mod bounded;
 #[doc(hidden)]
 pub mod derived;

@@ -34,7 +34,10 @@ pub mod solve;
 pub mod proof {
     pub use crate::cast::{Claim, Cover, SolidCertificate, SolidProof, StartProof, StopProof};
     pub use crate::pair::{DistanceCertificate, SolidPairProof};
-    pub use crate::penetration::{DepthCertificate, InnerCore};
+    pub use crate::penetration::{
+        CommonNode, CommonPartCertificate, CommonPartError, DepthCertificate, InnerCore, NodeFault,
+        ProvenRelation,
+    };
     pub use crate::solve::{Apart, Reason};
 }
 

@@ -6,8 +6,9 @@
 pub use colltrans_proof::SolidStatement;
 #[doc(inline)]
 pub use colltrans_solid::proof::{
-    Apart, Claim, Cover, DepthCertificate, DistanceCertificate, InnerCore, Reason,
-    SolidCertificate, SolidPairProof, SolidProof, StartProof, StopProof,
+    Apart, Claim, CommonNode, CommonPartCertificate, CommonPartError, Cover, DepthCertificate,
+    DistanceCertificate, InnerCore, NodeFault, ProvenRelation, Reason, SolidCertificate,
+    SolidPairProof, SolidProof, StartProof, StopProof,
 };
 #[doc(inline)]
 pub use colltrans_solid::{

@@ -595,7 +595,7 @@ impl Solid {
     }
 
     /// Returns the index of the piece to which a triangle belongs.
-    fn piece_of(&self, triangle: usize) -> usize {
+    pub(crate) fn piece_of(&self, triangle: usize) -> usize {
         let facet = self.facet_index[triangle].0;
         self.groups.piece_starts.partition_point(|start| *start <= facet)
     }

@@ -5,13 +5,19 @@
 //! - `depth`: the length of the shortest translation that separates two overlapping bodies, from below by `inner` and `cover`.
 //! - `prepared`: one pair for several of these queries.
 //! - `certificate`: proofs of both bounds of the depth, and their verification.
+//! - `common_certificate`: proofs of common parts, and their verification in exact cells (`cuts`) of bodies with exact
+//!   coordinates (`exact_pair`). `common_search` finds them.
 
 mod arrangement;
 mod cells;
 mod certificate;
 mod common;
+mod common_certificate;
+mod common_search;
 mod cover;
+mod cuts;
 mod depth;
+mod exact_pair;
 mod facet_tree;
 mod inner;
 mod piece;
@@ -20,6 +26,9 @@ mod surface;
 
 pub use certificate::{DepthCertificate, InnerCore};
 pub use common::{CommonPart, Relation, VolumeOptions};
+pub use common_certificate::{
+    CommonNode, CommonPartCertificate, CommonPartError, NodeFault, ProvenRelation,
+};
 pub use depth::SolidDepth;
 pub use inner::InnerPair;
 pub use prepared::PreparedPair;
@@ -147,6 +156,47 @@ pub trait SolidPenetration {
     /// # Errors
     /// Returns the first claim that is not proven.
     fn verify_depth(&self, proof: &DepthCertificate) -> Result<f64, CertificateError>;
+
+    /// Computes the common part of two bodies and its proof: bounds of its volume, its box, a point of it, and how the
+    /// bodies lie to each other, as far as it is proven.
+    ///
+    /// The bounds of the volume of simple bodies are as close as rounding allows. Otherwise the search ends when they are
+    /// as close as the options require. It also ends after a limited amount of work, so that the proof can be verified
+    /// quickly. Then the bounds may be farther apart than those of [`common_part`](Self::common_part).
+    ///
+    /// # Errors
+    /// Returns [`CommonPartError::Query`] for a rounded body. Other errors report that the proof cannot be verified, for
+    /// example because coordinates are out of range.
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::solid::{ProvenRelation, SolidPair, SolidPenetration, VolumeOptions};
+    /// use colltrans::{ConvexPolyhedron, Pair, Pose};
+    ///
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::splat(2.0))?;
+    /// let there = Pose::from_translation(DVec3::new(1.0, 1.5, 0.0))?;
+    /// let pair = Pair::between(cube.at(Pose::IDENTITY), cube.at(there))?;
+    /// let mut proof = pair.certified_common_part(VolumeOptions::default())?;
+    /// assert!(proof.volume[0] <= 1.0 && 1.0 <= proof.volume[1]);
+    /// assert!(proof.volume[1] - proof.volume[0] < 1e-9);
+    /// assert!(matches!(proof.relation, Some(ProvenRelation::Crossing { .. })));
+    /// pair.verify_common_part(&proof)?;
+    /// proof.volume[0] += 0.01;
+    /// assert!(pair.verify_common_part(&proof).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn certified_common_part(
+        &self,
+        options: VolumeOptions,
+    ) -> Result<CommonPartCertificate, CommonPartError>;
+
+    /// Verifies a proof of the common part exactly and without a search. Returns the difference of the bounds of the
+    /// volume.
+    ///
+    /// # Errors
+    /// Returns the first claim that is not proven, and [`CommonPartError::Work`] for a proof whose verification exceeds a
+    /// limit.
+    fn verify_common_part(&self, proof: &CommonPartCertificate) -> Result<f64, CommonPartError>;
 }
 
 impl SolidPenetration for Pair<'_, Solid> {
@@ -168,5 +218,16 @@ impl SolidPenetration for Pair<'_, Solid> {
 
     fn verify_depth(&self, proof: &DepthCertificate) -> Result<f64, CertificateError> {
         certificate::verify_depth(self, proof)
+    }
+
+    fn certified_common_part(
+        &self,
+        options: VolumeOptions,
+    ) -> Result<CommonPartCertificate, CommonPartError> {
+        common_search::certified_common_part(self, options)
+    }
+
+    fn verify_common_part(&self, proof: &CommonPartCertificate) -> Result<f64, CommonPartError> {
+        common_certificate::verify_common_part(self, proof)
     }
 }

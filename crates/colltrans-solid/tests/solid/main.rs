@@ -3,6 +3,7 @@
 mod allocation;
 mod casts;
 mod common;
+mod common_proof;
 mod convex;
 mod depth_proof;
 mod distance;

@@ -78,7 +78,7 @@ impl Polycube {
     }
 
     /// Returns whether a point that lies on no square is inside.
-    fn has_inside(&self, p: DVec3) -> bool {
+    pub(crate) fn has_inside(&self, p: DVec3) -> bool {
         self.contains(p.floor().to_array().map(|c| c as i64))
     }
 }
@@ -171,13 +171,13 @@ impl Polycube {
     }
 
     /// Returns the lowest corners of the cells.
-    fn lows(&self) -> impl Iterator<Item = DVec3> {
+    pub(crate) fn lows(&self) -> impl Iterator<Item = DVec3> {
         self.cells.iter().map(|cell| DVec3::from_array(cell.map(|c| c as f64)))
     }
 
     /// Returns the exact volume that boxes around the cells of another polycube have in common with this one. The boxes
     /// exceed the cells by `margin`, and are disjoint only without a margin.
-    fn common_volumes(&self, low: DVec3, margin: f64) -> f64 {
+    pub(crate) fn common_volumes(&self, low: DVec3, margin: f64) -> f64 {
         let common = |own: DVec3| (own + 1.0).min(low + 1.0 + margin) - own.max(low - margin);
         self.lows().map(|own| common(own).max(DVec3::ZERO).element_product()).sum()
     }
@@ -536,11 +536,11 @@ fn common(pair: &Pair<Solid>) -> CommonPart {
 }
 
 /// Builds a box with a cavity.
-fn hollow([low, high]: [[f64; 3]; 2], cavity: [[f64; 3]; 2]) -> Solid {
+pub(crate) fn hollow([low, high]: [[f64; 3]; 2], cavity: [[f64; 3]; 2]) -> Solid {
     solid(&block(low, high).joined(&block(cavity[0], cavity[1]).reversed()))
 }
 
-fn square_sheet(half: f64) -> Solid {
+pub(crate) fn square_sheet(half: f64) -> Solid {
     let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
     let corners = corners.map(|[x, y]| DVec3::new(5.0 + x, 5.0 + y, 5.0));
     Solid::from_open_mesh(&corners, &[[0, 1, 2, 3]]).expect("a sheet")

@@ -97,6 +97,12 @@ fn statement_json(
             put("lower", json!(proof.lower));
             put("upper", json!(proof.upper));
         }
+        Statement::SolidCommonPart(of) => {
+            put("volume", json!(of.volume));
+            of.bounds.map(|bounds| put("bounds", json!(bounds)));
+            of.point.map(|point| put("point", json!(point)));
+            of.relation.map(|relation| put("relation", json!(relation)));
+        }
         Statement::FreeDirections(of) => {
             put("tolerance", json!(of.tolerance));
         }

@@ -878,9 +878,9 @@ class Assembly:
         samples : int
             Number of sampled directions for parts that no other direction moves; 0 for none.
         effort : int
-            The work of each search for several moves, or a turn, that take out what a single move does
-            not. Other parts may make room and return. A larger effort continues the same search. 0 for
-            single moves only.
+            The work of each search for several moves, or a turn, that take out what a single move
+            does not. Other parts may make room and return. A larger effort continues the same
+            search. 0 for single moves only.
         proofs : bool
             Whether to prove for stuck parts that no translation of a group as one, in any
             direction, separates it from the others.

@@ -48,6 +48,9 @@ Notation: moving body ``P``, fixed body ``Q``, direction ``d``, all points in th
   is inside. No shorter translation separates such boxes. For convex bodies,
   the closed surface of *Depth*, less the length by which the hulls of their vertices must be shrunk
   to be inside their facets.
+- *Common parts of solids.* A box, each side of which bounds a body, is cut into convex cells. No
+  facet of a body meets a cell that is claimed to be on one side of it, and a ray shows on which
+  one. Corners are integers over a common denominator, and volumes are sums of tetrahedra.
 - *One body among many.* Every obstacle is checked: by its claim, as above, or else by the bounding
   boxes of both bodies, with their distance or the translation at which they meet.
 - *Motions.* For bodies that turn: at the time of each plane, its gap over all vertices, with sine
@@ -80,7 +83,9 @@ from __future__ import annotations
 import json
 import math
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
@@ -650,6 +655,8 @@ class Shape:
     facets: list[Facet] = field(default_factory=list)
     #: For each facet whether it belongs to an open surface.
     is_open: list[bool] = field(default_factory=list)
+    #: For each facet the number of its piece.
+    piece: list[int] = field(default_factory=list)
     #: The faces of a convex body; no claim depends on them.
     faces: list[list[int]] = field(default_factory=list)
     #: Upper bound of the distance of the input of a convex body beyond its vertices.
@@ -687,11 +694,13 @@ class Shape:
         fields(piece, "vertices triangles", "open")
         is_open = truth(piece.get("open", False))
         base, begin = len(self.points), len(self.facets)
+        number = self.piece[-1] + 1 if self.piece else 0
         self.points.extend(place(v) for v in listed(piece["vertices"]))
         for triangle in listed(piece["triangles"]):
             a, b, c = (base + whole(k, len(self.points) - base) for k in listed(triangle, 3))
             self.facets.append((a, b, c))
             self.is_open.append(is_open)
+            self.piece.append(number)
         used = {k for facet in self.facets[begin:] for k in facet}
         if used != set(range(base, len(self.points))):
             raise RefusedError("a piece has a vertex that no facet uses")
@@ -725,7 +734,7 @@ class Shape:
         last = len(self.points) - 1
         if self.facets or last > 1:
             return self
-        return replace(self, facets=[(0, last, last)], is_open=[True])
+        return replace(self, facets=[(0, last, last)], is_open=[True], piece=[0])
 
 
 #: Limits of :func:`are_own_faces` in largest coordinates: maximum distance of vertices from the
@@ -1641,6 +1650,524 @@ def solid_depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
         none = f"no translation below {float(lower)!r} separates them"
         (report.unchecked if found is None else report.holds).append(none)
     report.partly = report.partly or after.partly or found is None
+
+
+# Common parts of solids
+# ----------------------
+
+#: A plane ``a x + b y + c z + d = 0``, and a point ``x, y, z`` over a positive ``w``.
+Plane4: TypeAlias = tuple[int, int, int, int]
+Point4: TypeAlias = tuple[int, int, int, int]
+Ring: TypeAlias = list[Point4]
+#: Maximum number of corners of all cells of a proof.
+MAX_CORNERS = 8_000_000
+#: Maximum number of cuts around a cell.
+MAX_CUTS = 4096
+#: Binary digits after the point in sums of volumes, in roots.
+_VOLUME_DIGITS = 400
+
+
+def lowest_terms(v: Sequence[int]) -> Point4:
+    """Divides four integers by their common divisor, which keeps corners of many cuts short."""
+    most = math.gcd(*v) or 1
+    return v[0] // most, v[1] // most, v[2] // most, v[3] // most
+
+
+def side_of(plane: Plane4, v: Point4) -> int:
+    """Returns the height of a point above a plane, times a positive number."""
+    return plane[0] * v[0] + plane[1] * v[1] + plane[2] * v[2] + plane[3] * v[3]
+
+
+def cut_ring(ring: Ring, plane: Plane4) -> list[Ring | None]:
+    """Returns the parts of a convex polygon behind a plane and in front of it, None for no part."""
+    sides = [side_of(plane, v) for v in ring]
+    if min(sides) >= 0 or max(sides) <= 0:
+        return [ring if min(sides) < 0 else None, ring if max(sides) > 0 else None]
+    parts: list[Ring] = [[], []]
+    for k, (v, s) in enumerate(zip(ring, sides, strict=True)):
+        if s <= 0:
+            parts[0].append(v)
+        if s >= 0:
+            parts[1].append(v)
+        w, t = ring[k + 1 - len(ring)], sides[k + 1 - len(ring)]
+        if (s < 0 < t) or (t < 0 < s):
+            between = [abs(t) * a + abs(s) * b for a, b in zip(v, w, strict=True)]
+            for part in parts:
+                part.append(lowest_terms(between))
+    return [parts[0], parts[1]]
+
+
+@dataclass
+class Polytope:
+    """A convex cell with an interior: its faces, and the parts of facets of both bodies in it."""
+
+    faces: list[Ring]
+    facets: tuple[list[Ring], list[Ring]]
+    depth: int = 0
+    #: Whether the cell is inside each body, if that is known. Parts of the cell inherit it.
+    inside: tuple[bool | None, bool | None] = (None, None)
+
+    def corners(self) -> int:
+        return sum(map(len, self.faces)) + sum(len(ring) for part in self.facets for ring in part)
+
+    def cut(self, plane: Plane4) -> tuple[Polytope, Polytope]:
+        """Returns the parts behind a plane and in front of it."""
+        faces: tuple[list[Ring], list[Ring]] = ([], [])
+        for ring in self.faces:
+            for part, kept in zip(cut_ring(ring, plane), faces, strict=True):
+                if part is not None:
+                    kept.append(part)
+        if not faces[0] or not faces[1]:
+            raise RefusedError("a cut of a common part does not divide its cell")
+        for kept in faces:
+            # The cut closes a part: it has the edges of the faces in the plane, in reverse.
+            after: dict[Point4, Point4] = {}
+            for ring in kept:
+                flat = [side_of(plane, v) == 0 for v in ring]
+                for k, v in enumerate(ring):
+                    if flat[k - 1] and flat[k]:
+                        after[v] = ring[k - 1]
+            lid = [next(iter(after))]
+            while after[lid[-1]] != lid[0]:
+                lid.append(after[lid[-1]])
+            if len(lid) < 3 or len(lid) != len(after):
+                raise RefusedError("a cell of a common part does not close up")
+            kept.append(lid)
+        inner = []
+        for k in range(2):
+            split = [[cut_ring(ring, plane)[k] for ring in self.facets[body]] for body in range(2)]
+            inner.append(tuple([ring for ring in part if ring is not None] for part in split))
+        low, high = ((x, y) for x, y in inner)
+        return (
+            Polytope(faces[0], low, self.depth + 1, self.inside),
+            Polytope(faces[1], high, self.depth + 1, self.inside),
+        )
+
+    def tetrahedra(self) -> Iterator[tuple[Point4, Point4, Point4, Point4]]:
+        """Yields tetrahedra that fill the cell."""
+        top = self.faces[0][0]
+        for ring in self.faces:
+            if top not in ring:
+                for a, b in pairwise(ring[1:]):
+                    yield top, ring[0], a, b
+
+    def volume(self) -> Fraction:
+        """Returns the volume in cubic units."""
+        total = Fraction()
+        for corners in self.tetrahedra():
+            a, b, c, d = corners
+            u, v, w = (
+                (
+                    p[0] * a[3] - a[0] * p[3],
+                    p[1] * a[3] - a[1] * p[3],
+                    p[2] * a[3] - a[2] * p[3],
+                )
+                for p in (b, c, d)
+            )
+            weights = b[3] * c[3] * d[3] * a[3] ** 3
+            total += Fraction(abs(dot(u, cross(v, w))), 6 * weights)
+        return total
+
+    def inner_point(self) -> Point4:
+        """Returns a point of the interior."""
+        corners = next(self.tetrahedra())
+        weight = math.lcm(*(v[3] for v in corners))
+        x, y, z = (sum(v[k] * (weight // v[3]) for v in corners) for k in range(3))
+        return lowest_terms((x, y, z, 4 * weight))
+
+
+def winding_of(at: Point4, facets: list[Corners]) -> int:
+    """Returns the winding number of a surface around a point that is not on it."""
+    for k in range(1, 60):
+        way, count, sure = (3721, 61 * k, k * k), 0, True
+        for triangle in facets:
+            a, b, c = (
+                (
+                    v[0] * at[3] - at[0],
+                    v[1] * at[3] - at[1],
+                    v[2] * at[3] - at[2],
+                )
+                for v in triangle
+            )
+            sides = [dot(cross(u, v), way) for u, v in ((a, b), (b, c), (c, a))]
+            if min(sides) < 0 < max(sides):
+                continue
+            volume = dot(cross(a, b), c)
+            if volume == 0:
+                # A ray in the plane of a facet with an area may meet an edge of the facet.
+                normal = cross(minus(b, a), minus(c, a))
+                if any(normal) and dot(normal, way) == 0:
+                    sure = False
+                    break
+            elif 0 in sides:
+                sure = False
+                break
+            elif (volume > 0) == (sides[0] > 0):
+                count += 1 if sides[0] > 0 else -1
+        if sure:
+            return count
+    raise RefusedError("no ray decides whether a point is inside")
+
+
+def has_point(triangle: Corners, at: Point4) -> bool:
+    """Checks whether a facet contains a point."""
+    a, b, c = ((v[0] * at[3] - at[0], v[1] * at[3] - at[1], v[2] * at[3] - at[2]) for v in triangle)
+    normal = cross(minus(b, a), minus(c, a))
+    sides = [dot(cross(u, v), normal) for u, v in ((a, b), (b, c), (c, a))]
+    return any(normal) and dot(normal, a) == 0 and min(sides) >= 0
+
+
+def edges_of(facet: Facet) -> tuple[tuple[int, int], ...]:
+    a, b, c = facet
+    return (a, b), (b, c), (c, a)
+
+
+def is_balanced(facets: list[Facet]) -> bool:
+    """Checks whether each edge is passed as often in one direction as in the other."""
+    passed = Counter(edge for facet in facets for edge in edges_of(facet))
+    return all(passed[u, v] == passed[v, u] for u, v in passed)
+
+
+def connected(
+    facets: list[Facet], connects: Callable[[tuple[int, int]], bool]
+) -> list[list[Facet]]:
+    """Returns the parts of a surface that are connected across some edges."""
+    leads = list(range(len(facets)))
+
+    def root(k: int) -> int:
+        while leads[k] != k:
+            leads[k] = leads[leads[k]]
+            k = leads[k]
+        return k
+
+    first: dict[tuple[int, int], int] = {}
+    for k, facet in enumerate(facets):
+        for u, v in filter(connects, edges_of(facet)):
+            leads[root(k)] = root(first.setdefault((min(u, v), max(u, v)), k))
+    parts: dict[int, list[Facet]] = {}
+    for k, facet in enumerate(facets):
+        parts.setdefault(root(k), []).append(facet)
+    return list(parts.values())
+
+
+def shells_of(facets: list[Facet]) -> list[list[Facet]]:
+    """Returns the shells of a surface.
+
+    Facets are connected at edges that two of them have. If this does not give closed shells, all
+    facets of an edge are connected.
+    """
+    count = Counter(frozenset(edge) for facet in facets for edge in edges_of(facet))
+    shells = connected(facets, lambda edge: count[frozenset(edge)] == 2)
+    if all(is_balanced(shell) for shell in shells):
+        return shells
+    return connected(facets, lambda _: True)
+
+
+class TooLongError(Exception):
+    """A proof has too many cells to be checked here."""
+
+
+def check_outwards(shape: Shape) -> None:
+    """Checks that no shell is inside out, unless the rest of its piece surrounds its corners."""
+    points, _ = in_units([shape.points])
+    first: dict[Whole, int] = {}
+    names = [first.setdefault(v, k) for k, v in enumerate(points[0])]
+    work = 0
+    for number in set(shape.piece):
+        own = [
+            (names[a], names[b], names[c])
+            for (a, b, c), piece, is_open in zip(
+                shape.facets, shape.piece, shape.is_open, strict=True
+            )
+            if piece == number and not is_open
+        ]
+        parts = [
+            [(points[0][a], points[0][b], points[0][c]) for a, b, c in part]
+            for part in shells_of(own)
+        ]
+        for part in parts:
+            base = part[0][0]
+            sixth = (dot(minus(a, base), cross(minus(b, base), minus(c, base))) for a, b, c in part)
+            low, high = box_of([v for facet in part for v in facet])
+            # The library rounds volumes, so a shell without a volume may have any sign.
+            if sum(sixth) * 2**44 >= -(max(minus(high, low)) ** 3):
+                continue
+            corners = [(*v, 1) for v in {v for facet in part for v in facet}]
+            others = [facet for other in parts if other is not part for facet in other]
+            work += 2 * len(corners) * len(others)
+            if work > MAX_CORNERS:
+                raise TooLongError
+            free = [at for at in corners if not any(has_point(facet, at) for facet in others)]
+            if not free or any(winding_of(at, others) <= 0 for at in free):
+                raise RefusedError("a shell is inside out; facets have to point outwards")
+
+
+class Common:
+    """The bodies of a claim about their common part, in integers."""
+
+    def __init__(self, moving: Body, fixed: Body) -> None:
+        self.bodies = (moving, fixed)
+        placed = [[body.at(k) for k in range(len(body.points))] for body in self.bodies]
+        corners, self.unit_of = in_units(placed)
+        #: The facets with an area by their numbers, and those of each piece.
+        self.facets: list[dict[int, Corners]] = []
+        self.pieces: list[list[list[Corners]]] = []
+        for body, at in zip(self.bodies, corners, strict=True):
+            named: dict[int, Corners] = {}
+            pieces: dict[int, list[Corners]] = {}
+            shape = body.shape
+            for k, (a, b, c) in enumerate(shape.facets):
+                facet = (at[a], at[b], at[c])
+                if not shape.is_open[k] and any(
+                    cross(minus(facet[1], facet[0]), minus(facet[2], facet[0]))
+                ):
+                    named[k] = facet
+                    pieces.setdefault(shape.piece[k], []).append(facet)
+            self.facets.append(named)
+            self.pieces.append(list(pieces.values()))
+        bits = max(x.bit_length() for at in corners for v in at for x in v)
+        #: Factor by which long numbers take longer.
+        self.weight = (1 + bits // 512) ** 2
+        self.work = 0
+
+    def point(self, v: Vector) -> Point4:
+        weight = math.lcm(*((x * self.unit_of).denominator for x in v))
+        x, y, z = (int(x * self.unit_of * weight) for x in v)
+        return x, y, z, weight
+
+    def coordinate(self, axis: int, at: Fraction) -> Plane4:
+        """Returns the plane of the points with a coordinate."""
+        of = at * self.unit_of
+        plane = [0, 0, 0, -of.numerator]
+        plane[axis] = of.denominator
+        return plane[0], plane[1], plane[2], plane[3]
+
+    def facet_plane(self, body: int, number: int) -> Plane4:
+        if number not in self.facets[body]:
+            raise RefusedError(f"facet {number} does not exist, is open or has no area")
+        a, b, c = self.facets[body][number]
+        normal = cross(minus(b, a), minus(c, a))
+        return lowest_terms((*normal, -dot(normal, a)))
+
+    def is_inside(self, body: int, at: Point4) -> bool:
+        """Checks whether a point that is on no facet is inside one of the pieces of a body."""
+        windings = [winding_of(at, facets) for facets in self.pieces[body]]
+        if min(windings, default=0) < 0:
+            raise RefusedError("a piece has a negative winding number in a cell")
+        return max(windings, default=0) > 0
+
+    def check_point(self, at: Vector, inside: tuple[bool, bool]) -> None:
+        """Checks that a point is in the interior of bodies, and off the others."""
+        point = self.point(at)
+        for body, claimed in enumerate(inside):
+            facets = self.facets[body].values()
+            if any(has_point(facet, point) for facet in facets):
+                raise RefusedError("a point is on the surface of a body")
+            if self.is_inside(body, point) != claimed:
+                raise RefusedError("a point is on the other side of a body")
+
+    def root(self, low: Vector, high: Vector) -> tuple[Polytope, list[bool]]:
+        """Returns a box that contains the common part, and which bodies are in it."""
+        contains = [True, True]
+        for axis, (end, sign) in product(range(3), ((low, -1), (high, 1))):
+            plane = self.coordinate(axis, end[axis])
+            bounds = [
+                all(sign * side_of(plane, (*v, 1)) <= 0 for facet in named.values() for v in facet)
+                for named in self.facets
+            ]
+            if not any(bounds):
+                raise RefusedError("a side of the root bounds no body")
+            contains = [a and b for a, b in zip(contains, bounds, strict=True)]
+        if any(b <= a for a, b in zip(low, high, strict=True)):
+            raise RefusedError("the root has no interior")
+        v = [self.point((x[0], y[1], z[2])) for x, y, z in product((low, high), repeat=3)]
+        sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+        faces = [[lowest_terms(v[k]) for k in side] for side in sides]
+        parts: list[list[Ring]] = []
+        for named in self.facets:
+            rings: list[Ring] = [[(*v, 1) for v in facet] for facet in named.values()]
+            for axis, (end, k) in product(range(3), ((low, 1), (high, 0))):
+                plane = self.coordinate(axis, end[axis])
+                cut = [cut_ring(ring, plane)[k] for ring in rings]
+                rings = [ring for ring in cut if ring is not None]
+            parts.append(rings)
+        return Polytope(faces, (parts[0], parts[1])), contains
+
+    def spend(self, work: int) -> None:
+        self.work += work * self.weight
+        if self.work > MAX_CORNERS:
+            raise TooLongError
+
+    def check_side(self, cell: Polytope, body: int, claimed: bool) -> None:
+        """Checks that a cell is on one side of a body."""
+        if cell.facets[body]:
+            raise RefusedError("a facet of a body meets a cell that is claimed to be on one side")
+        if self.side(cell, body) != claimed:
+            raise RefusedError("a cell is on the other side of a body")
+
+    def side(self, cell: Polytope, body: int) -> bool:
+        """Returns whether a cell that no facet of a body meets is inside this body."""
+        known = cell.inside[body]
+        if known is None:
+            self.spend(len(self.facets[body]))
+            known = self.is_inside(body, cell.inner_point())
+            cell.inside = (known, cell.inside[1]) if body == 0 else (cell.inside[0], known)
+        return known
+
+    def decide_sides(self, cell: Polytope) -> None:
+        """Decides the sides of a cell before it is cut, so that its parts inherit them."""
+        for body in range(2):
+            if not cell.facets[body]:
+                # Only a claim about such a part is refused.
+                with suppress(RefusedError):
+                    self.side(cell, body)
+
+
+#: The claims of a leaf: each body, and whether the cell is inside.
+_LEAVES: dict[str, list[tuple[int, bool]]] = {
+    "both": [(0, True), (1, True)],
+    "outside_moving": [(0, False)],
+    "outside_fixed": [(1, False)],
+    "undecided": [],
+}
+_CUTS = ("x", "y", "z", "moving", "fixed")
+
+
+def read_nodes(nodes: Any) -> list[tuple[str, Fraction | int]]:
+    """Reads the nodes of a tree of cells."""
+    read: list[tuple[str, Fraction | int]] = []
+    for node in listed(nodes):
+        if isinstance(node, str):
+            if node not in _LEAVES:
+                raise NoProofError(f"{node!r:.40} is not a cell")
+            read.append((node, 0))
+            continue
+        kind, value = one_of(node, *_CUTS)
+        read.append((kind, number(value) if kind in "xyz" else whole(value, 2**32)))
+    return read
+
+
+def read_box(value: Any) -> tuple[Vector, Vector]:
+    bounds = fields(value, "low high")
+    return vector(bounds["low"]), vector(bounds["high"])
+
+
+def in_range(*vectors: Vector) -> None:
+    """Refuses coordinates out of range."""
+    for x in (x for v in vectors for x in v):
+        if x and not _RANGE[0] <= abs(x) <= _RANGE[1]:
+            raise RefusedError(f"the coordinate {float(x)!r} is out of range")
+
+
+def check_cells(
+    common: Common,
+    nodes: list[tuple[str, Fraction | int]],
+    root: tuple[Vector, Vector],
+    bounds: tuple[Vector, Vector] | None,
+    volume: tuple[Fraction, Fraction],
+    relation: tuple[str | None, bool],
+) -> None:
+    """Checks the cells of a common part, and the claims that they prove together."""
+    cell, contains = common.root(*root)
+    walls = None
+    if bounds is not None:
+        walls = [
+            (common.coordinate(axis, bounds[k][axis]), 1 - 2 * k)
+            for axis, k in product(range(3), range(2))
+        ]
+    whole_volume = cell.volume()
+    scale = 2**_VOLUME_DIGITS / whole_volume
+    sums, leaves, stack = [0, 0], set(), [cell]
+    for kind, value in nodes:
+        if not stack:
+            raise RefusedError("the tree of cells ends before its nodes")
+        cell = stack.pop()
+        common.spend(8 + cell.corners())
+        if kind in _CUTS:
+            if cell.depth >= MAX_CUTS:
+                raise RefusedError("a cell has too many cuts around it")
+            if isinstance(value, Fraction):
+                in_range((value, value, value))
+                plane = common.coordinate(_CUTS.index(kind), value)
+            else:
+                plane = common.facet_plane(0 if kind == "moving" else 1, value)
+            common.decide_sides(cell)
+            behind, before = cell.cut(plane)
+            stack += [before, behind]
+            continue
+        for body, claimed in _LEAVES[kind]:
+            common.check_side(cell, body, claimed)
+        leaves.add(kind)
+        if kind in ("both", "undecided"):
+            part = cell.volume() * scale
+            sums[0] += math.floor(part) if kind == "both" else 0
+            sums[1] += math.ceil(part)
+            if walls is None or any(
+                sign * side_of(plane, v) < 0
+                for plane, sign in walls
+                for ring in cell.faces
+                for v in ring
+            ):
+                raise RefusedError("the box of the common part does not contain a cell")
+    if stack:
+        raise RefusedError("the nodes end before the tree of cells")
+    cubic = scale * common.unit_of**3
+    if volume[0] * cubic > sums[0] or volume[1] * cubic < sums[1]:
+        raise RefusedError("the cells do not prove the bounds of the volume")
+    name, has_point = relation
+    refused = {
+        None: False,
+        "disjoint": bool(leaves & {"both", "undecided"}),
+        "crossing": "both" not in leaves and not has_point,
+        "moving_contained": not contains[0] or not leaves <= {"both", "outside_moving"},
+        "fixed_contained": not contains[1] or not leaves <= {"both", "outside_fixed"},
+    }
+    is_empty = name in ("moving_contained", "fixed_contained") and "both" not in leaves
+    if refused[name] or is_empty:
+        raise RefusedError("the cells do not prove the relation of the bodies")
+
+
+def solid_common_part(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
+    """Checks the bounds of the volume that two solids have in common."""
+    claim = fields(claim, "volume root nodes", "bounds point relation")
+    lower, upper = (number(x) for x in listed(claim["volume"], 2))
+    nodes, root = read_nodes(claim["nodes"]), read_box(claim["root"])
+    bounds = None if claim["bounds"] is None else read_box(claim["bounds"])
+    point = None if claim["point"] is None else vector(claim["point"])
+    relation, alone = claim["relation"], []
+    if isinstance(relation, dict):
+        relation, only = one_of(relation, "crossing")
+        only = fields(only, "only_moving only_fixed")
+        alone = [vector(only["only_moving"]), vector(only["only_fixed"])]
+    elif relation not in (None, "disjoint", "moving_contained", "fixed_contained"):
+        raise NoProofError(f"{relation!r:.40} is not a relation")
+    if radii(moving, fixed):
+        raise RefusedError("common parts of rounded solids are not claimed")
+    if not 0 <= lower <= upper:
+        raise RefusedError("the bounds of the volume are not in order")
+    in_range(*root, *(bounds or ()), *([] if point is None else [point]), *alone)
+    if any(body.shape.has_open_area() for body in (moving, fixed)):
+        report.partly = True
+        report.unchecked.append("the common part: an open surface may have closed parts")
+        return
+    common = Common(moving, fixed)
+    if point is not None:
+        common.check_point(point, (True, True))
+    for at, inside in zip(alone, ((True, False), (False, True)), strict=False):
+        common.check_point(at, inside)
+    try:
+        for body in (moving, fixed):
+            check_outwards(body.shape)
+        check_cells(common, nodes, root, bounds, (lower, upper), (relation, point is not None))
+    except TooLongError:
+        report.partly = True
+        report.unchecked.append(f"the common part: its cells have over {MAX_CORNERS} corners")
+        return
+    report.holds.append(
+        f"the common part has a volume between {float(lower)!r} and {float(upper)!r}"
+    )
+    if relation is not None:
+        report.holds.append(f"the relation of the bodies is {relation}")
 
 
 # One body among many
@@ -4163,8 +4690,11 @@ PLACED = {
     "depth": depth,
     "solid_distance": solid_distance,
     "solid_depth": solid_depth,
+    "solid_common_part": solid_common_part,
     "free_directions": free_directions,
 }
+#: The claims about two solids.
+SOLID_PAIRS = ("solid_distance", "solid_depth", "solid_common_part", "free_directions")
 #: The kind of query of each kind of claim.
 CLAIMS = {
     **dict.fromkeys(("contacts", "separation", "clearance"), "cast"),
@@ -4192,7 +4722,7 @@ def check_cast(file: File, kind: str, claim: Any, report: Report) -> None:
 
 def check_pair(file: File, kind: str, claim: Any, report: Report) -> None:
     """Checks a claim about two bodies at fixed poses."""
-    moving, fixed = file.two(solids=kind in ("solid_distance", "solid_depth", "free_directions"))
+    moving, fixed = file.two(solids=kind in SOLID_PAIRS)
     if kind == "free_directions" and any(moving.shape.is_open + fixed.shape.is_open):
         raise NoProofError("free directions are not claimed for open surfaces")
     if kind == "free_directions" and radii(moving, fixed):

@@ -7,6 +7,7 @@ use colltrans_convex::cast::case_file::json_error_message;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_motion::MotionProofError;
 use colltrans_motion::path::{PathError, PathProofError};
+use colltrans_solid::proof::CommonPartError;
 
 /// Name of the format.
 pub(super) const FORMAT: &str = "colltrans proof";
@@ -69,12 +70,15 @@ pub enum ProofFileError {
     /// A path is rejected.
     #[error(transparent)]
     Path(#[from] PathError),
+    /// A common part has no proof.
+    #[error(transparent)]
+    CommonPart(#[from] CommonPartError),
     /// The statement does not fit the query or the bodies, or claims nothing.
     #[error(
         "the statement must make a claim and fit the query, the placement and the bodies: a cast has \
          contacts or a separation of two convex bodies, or a clearance of two solids; a pair has a distance or a \
-         depth of two convex bodies, or a solid_distance, solid_depth or free_directions of two solids; a scene has nearest, \
-         within or scene_clearance; motions have motions, one for each pair; a path has a path"
+         depth of two convex bodies, or a solid_distance, solid_depth, solid_common_part or free_directions of two \
+         solids; a scene has nearest, within or scene_clearance; motions have motions, one for each pair; a path has a path"
     )]
     Statement,
     /// The file has no pair of bodies, and therefore no claim.
@@ -112,6 +116,24 @@ pub enum ProofError {
     /// A proof of a path is not valid.
     #[error(transparent)]
     Path(#[from] PathProofError),
+    /// A proof of a common part is not valid.
+    #[error(transparent)]
+    CommonPart(#[from] CommonPartError),
+    /// A piece of a body is inside out.
+    #[error(
+        "a shell of the {} body is inside out; a common part is proven only for facets that point outwards",
+        if *is_moving { "moving" } else { "fixed" }
+    )]
+    InsideOut {
+        /// Whether it is the moving body.
+        is_moving: bool,
+    },
+    /// A cut names a facet that does not exist or has no area.
+    #[error("a cut is in the plane of facet {facet}, which does not exist or has no area")]
+    UnknownFacet {
+        /// Index of the facet in the file.
+        facet: u32,
+    },
     /// A claim is stronger than the proof.
     #[error(
         "the claimed bounds of the first contact are {} and {}, the proven ones {} and {}",

@@ -38,7 +38,9 @@ use colltrans_scene::{ClearanceProof, NearbyProof, NearestProof};
 use colltrans_solid::body::Solid;
 use colltrans_solid::kinds::AnyPlaced;
 use colltrans_solid::pair::{DistanceCertificate, ProofInput};
-use colltrans_solid::penetration::{DepthCertificate, SolidPenetration};
+use colltrans_solid::penetration::{
+    CommonPartCertificate, DepthCertificate, SolidPenetration, VolumeOptions,
+};
 use colltrans_solid::{SolidCast, SolidPairSearch, SolidSteps};
 
 use body::StoredBody;
@@ -50,7 +52,7 @@ pub use path::PathStatement;
 pub use proven::{Proven, Verify};
 use scene::PlacedScene;
 pub use statement::{Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Stop};
-use statement::{solid_options, with_file_facets};
+use statement::{common_part_with_file_facets, solid_options, with_file_facets};
 
 /// Statement of a [`ProofFile`] about its bodies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -70,6 +72,8 @@ pub enum Statement {
     SolidDistance(DistanceCertificate),
     /// Depth of solids in their given poses.
     SolidDepth(DepthCertificate),
+    /// Common part of solids in their given poses.
+    SolidCommonPart(CommonPartCertificate),
     /// Free directions of a solid.
     FreeDirections(FreeStatement),
     /// Nearest of several obstacles.
@@ -276,6 +280,27 @@ impl ProofFile {
         proof.apart = with_file_facets(proof.apart, [moving, fixed]);
         let (placement, query) = (Placement::of_two(poses), Query::Pair);
         Ok(Self::new(made.0.into(), placement, query, Statement::SolidDepth(proof)))
+    }
+
+    /// Computes [`SolidPenetration::certified_common_part`] for bodies that are rebuilt from the file. `pieces`
+    /// has the meaning that it has for [`Self::of_solids`].
+    ///
+    /// # Errors
+    /// Returns the errors of the query, and an error for a body that cannot be rebuilt from its own facets.
+    pub fn of_solid_common_part(
+        pair: &Pair<'_, Solid>,
+        pieces: [&[&Solid]; 2],
+        options: VolumeOptions,
+    ) -> Result<Self, ProofFileError> {
+        let made = RebuiltSolids::rebuild(pieces, [pair.moving(), pair.fixed()])?;
+        let [moving, fixed] = made.solids()?;
+        let poses = [pair.moving_pose(), pair.fixed_pose()];
+        let again = Pair::new(moving.at(poses[0]), fixed.at(poses[1]))?;
+        let proof = again.certified_common_part(options)?;
+        let statement =
+            Statement::SolidCommonPart(common_part_with_file_facets(proof, [moving, fixed]));
+        let (placement, query) = (Placement::of_two(poses), Query::Pair);
+        Ok(Self::new(made.0.into(), placement, query, statement))
     }
 
     /// Computes an answer about the given bodies, and its proof about the bodies of the file.

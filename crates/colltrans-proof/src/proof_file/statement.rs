@@ -1,5 +1,7 @@
 //! Statements about two bodies with their certificates, and their checks.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +22,9 @@ use colltrans_solid::SolidCast;
 use colltrans_solid::body::Solid;
 use colltrans_solid::cast::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
 use colltrans_solid::pair::DistanceCertificate;
-use colltrans_solid::penetration::{DepthCertificate, SolidPenetration};
+use colltrans_solid::penetration::{
+    CommonNode, CommonPartCertificate, DepthCertificate, SolidPenetration,
+};
 use colltrans_solid::solve::contact::SolidContact;
 use colltrans_solid::solve::nearest::SolidNear;
 
@@ -224,6 +228,52 @@ impl Verify<'_, Pair<'_, Solid>> for DepthCertificate {
         pair.verify_depth(&Self { apart, ..self.clone() })?;
         Ok(Proven::Statement)
     }
+}
+
+/// The certificate of a file identifies triangles by the facets of the file. Its claims are about these facets, so that
+/// none of them may have been reversed.
+impl Verify<'_, Pair<'_, Solid>> for CommonPartCertificate {
+    fn verify(&self, pair: &Pair<'_, Solid>) -> Result<Proven<'static>, ProofError> {
+        let bodies = [pair.moving(), pair.fixed()];
+        if let Some(body) = bodies.iter().position(|body| body.report().turned() > 0) {
+            return Err(ProofError::InsideOut { is_moving: body == 0 });
+        }
+        let places = bodies.map(|body| {
+            let mut places = HashMap::new();
+            for (at, facet) in body.facet_indices().iter().enumerate() {
+                places.entry(facet.0).or_insert(at as u32);
+            }
+            places
+        });
+        let unknown = |facet| ProofError::UnknownFacet { facet };
+        let name = |k: usize, facet| places[k].get(&facet).copied().ok_or_else(|| unknown(facet));
+        pair.verify_common_part(&rename_cuts(self, name)?)?;
+        Ok(Proven::Statement)
+    }
+}
+
+/// Returns a proof that identifies triangles by the facets of the file.
+pub(super) fn common_part_with_file_facets(
+    of: CommonPartCertificate,
+    bodies: [&Solid; 2],
+) -> CommonPartCertificate {
+    rename_cuts(&of, |k, at| facet_of_triangle(bodies[k], at).ok_or(())).unwrap_or(of)
+}
+
+/// Replaces the triangles of cuts.
+fn rename_cuts<E>(
+    of: &CommonPartCertificate,
+    name: impl Fn(usize, u32) -> Result<u32, E>,
+) -> Result<CommonPartCertificate, E> {
+    let rename = |node: &CommonNode| {
+        Ok(match *node {
+            CommonNode::Moving(triangle) => CommonNode::Moving(name(0, triangle)?),
+            CommonNode::Fixed(triangle) => CommonNode::Fixed(name(1, triangle)?),
+            other => other,
+        })
+    };
+    let nodes = of.nodes.iter().map(rename).collect::<Result<_, E>>()?;
+    Ok(CommonPartCertificate { nodes, ..of.clone() })
 }
 
 /// Returns a proof of a file that identifies triangles by their positions in the solids.

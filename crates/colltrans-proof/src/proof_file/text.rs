@@ -11,7 +11,7 @@ use colltrans_removal::directions::CellProof;
 use colltrans_scene::{ClearanceProof, NearbyProof, NearestProof};
 use colltrans_solid::cast::{SolidCertificate, StartOverlap, StartProof};
 use colltrans_solid::pair::DistanceCertificate;
-use colltrans_solid::penetration::DepthCertificate;
+use colltrans_solid::penetration::{CommonPartCertificate, DepthCertificate, ProvenRelation};
 
 /// Maximum number of obstacles that a text names.
 const MAX_NAMED: usize = 12;
@@ -103,6 +103,7 @@ impl Statement {
                  translation below {lower:?} separates their interiors",
                 translation.to_array()
             ),
+            Self::SolidCommonPart(of) => write_common_part(of, f),
             Self::FreeDirections(statement) => fmt::Display::fmt(statement, f),
             Self::Nearest(NearestProof { lower, obstacle, near, .. }) => {
                 let upper = near.distance();
@@ -173,6 +174,24 @@ impl fmt::Display for FreeStatement {
              {inside}{exactly} are decided exactly, {undecided} are undecided"
         )
     }
+}
+
+/// Writes the claims about a common part.
+fn write_common_part(of: &CommonPartCertificate, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let CommonPartCertificate { volume: [lower, upper], relation, bounds, .. } = of;
+    f.write_str(match relation {
+        Some(ProvenRelation::Disjoint) => return f.write_str("the interiors have no common point"),
+        Some(ProvenRelation::Crossing { .. }) => "no body contains the other, ",
+        Some(ProvenRelation::MovingContained) => "the fixed body contains the moving one, ",
+        Some(ProvenRelation::FixedContained) => "the moving body contains the fixed one, ",
+        _ => "",
+    })?;
+    write!(f, "the common part of the interiors has a volume between {lower:?} and {upper:?}")?;
+    if let Some(bounds) = bounds {
+        let [low, high] = [bounds.low, bounds.high].map(|corner| corner.to_array());
+        write!(f, ", in the box from {low:?} to {high:?}")?;
+    }
+    Ok(())
 }
 
 /// Returns the bounds of a distance as text.

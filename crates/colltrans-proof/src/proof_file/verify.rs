@@ -69,6 +69,9 @@ impl ProofFile {
                     (Statement::SolidDepth(of), [Solid(p), Solid(q)]) => {
                         boxed_claim(of, Pair::new(p, q)?)
                     }
+                    (Statement::SolidCommonPart(of), [Solid(p), Solid(q)]) => {
+                        boxed_claim(of, Pair::new(p, q)?)
+                    }
                     (Statement::FreeDirections(of), [Solid(p), Solid(q)]) => {
                         boxed_claim(of, [p, q])
                     }

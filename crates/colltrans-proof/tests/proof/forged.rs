@@ -6,11 +6,11 @@ use colltrans_convex::{
 use colltrans_motion::{Motion, MotionCast};
 use colltrans_proof::ProofFile;
 use colltrans_scene::{Obstacles, SceneQuery};
-use colltrans_solid::{AsSolid, Solid, SolidOptions, StartOverlap};
+use colltrans_solid::{AsSolid, Solid, SolidOptions, StartOverlap, VolumeOptions};
 use colltrans_testkit::bodies::{at_xyz as pose, cube};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::proofs::checkers::{RationalChecker, Verdict, verify};
-use colltrans_testkit::oracle::proofs::{Campaign, KINDS, solid_depths};
+use colltrans_testkit::oracle::proofs::{Campaign, KINDS, common_parts, solid_depths};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::tally::Tally;
 use glam::{DQuat, DVec3};
@@ -341,6 +341,237 @@ fn depths_of_cores_apart_are_refused() {
         (depth["cores"], depth["lower"]) = (json!([[core(0.0, 0), core(x, 1)]]), json!(0.9));
         depth["upper"] = json!(1.0_f64.max(depth["upper"].as_f64().expect("a number")));
         assert_refused(&forged, &mut fractions);
+    }
+}
+
+/// Both checkers accept proofs of common parts, and refuse each number, index and cell that claims more.
+#[test]
+#[ignore = "long: every changed proof is checked in fractions"]
+fn changed_common_part_proofs_are_refused() {
+    let mut fractions = start_fractions();
+    let (mut proofs, mut overlapping) = (0, 0);
+    for seed in 0..cases(120) {
+        let Some(text) = (common_parts::COMMON_PARTS.draw_proof)(seed) else { continue };
+        proofs += 1;
+        let file: Value = serde_json::from_str(&text).expect("JSON");
+        assert_holds(&file, &mut fractions);
+        let part = &file["statement"]["solid_common_part"];
+        let [lower, upper] = [0, 1].map(|k| part["volume"][k].as_f64().expect("a number"));
+        overlapping += usize::from(lower > 0.0);
+        let mut changes = vec![
+            ("/volume/0".to_owned(), json!(lower * (1.0 + 1e-9) + 1e-200)),
+            ("/volume/0".to_owned(), json!(-1.0)),
+            ("/nodes".to_owned(), json!([])),
+            ("/root/low".to_owned(), part["root"]["high"].clone()),
+            ("/point".to_owned(), json!([1e30, 1e30, 1e30])),
+        ];
+        if upper > 0.0 {
+            changes.push(("/volume/1".to_owned(), json!((upper * (1.0 - 1e-9)).min(lower))));
+            changes.push(("/bounds".to_owned(), Value::Null));
+            changes.push(("/bounds/low".to_owned(), part["bounds"]["high"].clone()));
+            changes.push(("/relation".to_owned(), json!("disjoint")));
+        }
+        for (k, node) in part["nodes"].as_array().expect("nodes").iter().enumerate().take(24) {
+            let other = match node.as_str() {
+                Some("both") => json!("outside_fixed"),
+                Some("outside_moving" | "outside_fixed") => json!("both"),
+                Some(_) => json!("outside"),
+                None => json!("undecided"),
+            };
+            changes.push((format!("/nodes/{k}"), other));
+        }
+        for (name, value) in changes {
+            let mut other = file.clone();
+            let at = format!("/statement/solid_common_part{name}");
+            match other.pointer_mut(&at) {
+                Some(field) => *field = value,
+                None => other["statement"]["solid_common_part"]["point"] = value,
+            }
+            assert_refused(&other, &mut fractions);
+        }
+    }
+    assert!(3 * proofs > cases(120) && 3 * overlapping > proofs, "{overlapping} of {proofs}");
+}
+
+/// Returns a box with facets that point outwards, or inwards.
+fn piece(low: [f64; 3], high: [f64; 3], is_inverted: bool) -> Value {
+    let corner = |k: usize| [0, 1, 2].map(|axis| [low, high][k >> axis & 1][axis]);
+    let sides =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let facets = sides.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+    let facets = facets.map(|[a, b, c]| if is_inverted { [a, c, b] } else { [a, b, c] });
+    let vertices: Vec<[f64; 3]> = (0..8).map(corner).collect();
+    json!({ "vertices": vertices, "triangles": facets.collect::<Vec<[usize; 3]>>() })
+}
+
+/// Joins two pieces to one.
+fn joined(a: &Value, b: &Value) -> Value {
+    let list = |of: &Value, name: &str| of[name].as_array().expect("a list").clone();
+    let base = list(a, "vertices").len() as u64;
+    let moved = list(b, "triangles")
+        .into_iter()
+        .map(|facet| json!([0, 1, 2].map(|k| facet[k].as_u64().expect("an index") + base)));
+    let vertices = [list(a, "vertices"), list(b, "vertices")].concat();
+    let triangles = [list(a, "triangles"), moved.collect()].concat();
+    json!({ "vertices": vertices, "triangles": triangles })
+}
+
+/// Returns a file about a union of pieces and the box from 0 to 4, with one cell as root.
+fn common_file(pieces: &[Value], root: [[f64; 3]; 2], volume: [f64; 2], node: &str) -> Value {
+    let pose = json!({ "matrix": [1, 0, 0, 0, 1, 0, 0, 0, 1], "translation": [0, 0, 0] });
+    let around = json!({ "low": root[0], "high": root[1] });
+    // The library rounds volumes.
+    let volume = [volume[0] * (1.0 - 1e-9), volume[1] * (1.0 + 1e-9)];
+    let mut part = json!({ "volume": volume, "root": around, "nodes": [node] });
+    if node == "both" || node == "undecided" {
+        part["bounds"] = around;
+    }
+    json!({
+        "format": "colltrans proof",
+        "version": 2,
+        "bodies": [{ "pieces": pieces }, { "pieces": [piece([0.0; 3], [4.0; 3], false)] }],
+        "placement": { "poses": [{ "body": 0, "pose": pose }, { "body": 1, "pose": pose }] },
+        "query": "pair",
+        "statement": { "solid_common_part": part },
+    })
+}
+
+/// What is inside a solid follows the winding numbers of its pieces, in both checkers.
+#[test]
+fn common_parts_of_unusual_surfaces_have_the_same_verdict_in_both_checkers() {
+    let mut fractions = start_fractions();
+    let whole = [[0.0; 3], [4.0; 3]];
+    let cube = |is_inverted| piece([0.0; 3], [4.0; 3], is_inverted);
+    let small = |is_inverted| piece([1.0; 3], [3.0; 3], is_inverted);
+    let wide = piece([-1.0; 3], [5.0; 3], false);
+    // Pieces that overlap count once.
+    for pieces in
+        [vec![cube(false)], vec![cube(false), cube(false)], vec![cube(false), wide.clone()]]
+    {
+        assert_holds(&common_file(&pieces, whole, [64.0, 64.0], "both"), &mut fractions);
+        for (volume, node) in [([0.0, 0.0], "outside_moving"), ([128.0, 128.0], "both")] {
+            assert_refused(&common_file(&pieces, whole, volume, node), &mut fractions);
+        }
+    }
+    // A piece that is inside out is neither empty nor does it remove others.
+    let union = [wide.clone(), cube(true)];
+    for pieces in [&[cube(true)][..], &union[..]] {
+        for (volume, node) in [([0.0, 0.0], "outside_moving"), ([64.0, 64.0], "both")] {
+            assert_refused(&common_file(pieces, whole, volume, node), &mut fractions);
+        }
+    }
+    // A cavity is empty, unless another piece fills it. A second shell of the same piece fills nothing twice.
+    let hollow = joined(&wide, &cube(true));
+    assert_holds(
+        &common_file(std::slice::from_ref(&hollow), whole, [0.0, 0.0], "outside_moving"),
+        &mut fractions,
+    );
+    assert_refused(
+        &common_file(std::slice::from_ref(&hollow), whole, [64.0, 64.0], "both"),
+        &mut fractions,
+    );
+    let filled = [hollow, cube(false)];
+    assert_holds(&common_file(&filled, whole, [64.0, 64.0], "both"), &mut fractions);
+    let doubled = joined(&wide, &cube(false));
+    assert_holds(&common_file(&[doubled], whole, [64.0, 64.0], "both"), &mut fractions);
+    // Facets in the cell.
+    let crossed = [wide.clone(), small(false)];
+    for node in ["both", "outside_moving", "outside_fixed"] {
+        assert_refused(&common_file(&crossed, whole, [0.0, 64.0], node), &mut fractions);
+    }
+    assert_holds(&common_file(&crossed, whole, [0.0, 64.0], "undecided"), &mut fractions);
+    // A cavity that reaches out of its piece has a negative winding number there.
+    let through = joined(&piece([-1.0; 3], [2.0; 3], false), &piece([-0.5; 3], [5.0; 3], true));
+    let corner = [[2.0; 3], [4.0; 3]];
+    for node in ["both", "outside_moving"] {
+        let mut file = common_file(std::slice::from_ref(&through), corner, [0.0, 64.0], node);
+        file["statement"]["solid_common_part"]["root"] =
+            json!({ "low": [0, 0, 0], "high": [4, 4, 4] });
+        assert_refused(&file, &mut fractions);
+    }
+    // An inverted shell that reaches out of the others is inside out, although a corner of it is inside them.
+    let poking = joined(&cube(false), &piece([3.0; 3], [5.0; 3], true));
+    let common = [[3.25; 3], [3.75; 3]];
+    for node in ["both", "outside_moving"] {
+        let file = common_file(std::slice::from_ref(&poking), common, [0.0, 0.125], node);
+        assert_refused(&file, &mut fractions);
+    }
+}
+
+/// A long tree is refused, and a number beyond the range, without a crash.
+#[test]
+fn common_parts_with_hostile_trees_are_refused() {
+    let mut fractions = start_fractions();
+    let whole = [[0.0; 3], [4.0; 3]];
+    let file = common_file(&[piece([0.0; 3], [4.0; 3], false)], whole, [64.0, 64.0], "both");
+    let with = |nodes: Value| {
+        let mut file = file.clone();
+        file["statement"]["solid_common_part"]["nodes"] = nodes;
+        file
+    };
+    assert_holds(&with(json!([{ "x": 1.0 }, "both", { "y": 2 }, "both", "both"])), &mut fractions);
+    let cut = |cut: Value| with(json!([cut, "both", "both"]));
+    for number in [0.0, -0.0, 4.0, 5.0, 1e-300, 1e300, 1e61] {
+        assert_refused(&cut(json!({ "x": number })), &mut fractions);
+    }
+    for hostile in [
+        json!({ "moving": 0 }),
+        json!({ "moving": 12 }),
+        json!({ "moving": 4_294_967_295_u32 }),
+        json!({ "moving": -1 }),
+        json!({ "w": 1.0 }),
+        json!({ "x": null }),
+        json!({ "x": 1.0, "y": 1.0 }),
+        json!("inside"),
+        json!(null),
+        json!([]),
+    ] {
+        assert_refused(&cut(hostile), &mut fractions);
+    }
+    let chain = |count: usize| {
+        let cuts = (1..=count).map(|k| json!({ "x": 4.0 - 4.0 * k as f64 / (count + 1) as f64 }));
+        with(cuts.chain((0..=count).map(|_| json!("both"))).collect())
+    };
+    assert_holds(&chain(64), &mut fractions);
+    assert_refused(&chain(4100), &mut fractions);
+    let mut deep = vec![json!({ "x": 2.0 }); 100_000];
+    deep.push(json!("both"));
+    assert_refused(&with(Value::Array(deep)), &mut fractions);
+    // Extreme but admitted coordinates are decided exactly.
+    for (low, high) in [(0.0, 2.0_f64.powi(-199)), (2.0_f64.powi(199), 2.0_f64.powi(199) * 1.5)] {
+        let box_of = || piece([low; 3], [high; 3], false);
+        let volume = (high - low).powi(3);
+        let mut file = common_file(&[box_of()], [[low; 3], [high; 3]], [volume; 2], "both");
+        file["bodies"][1]["pieces"] = json!([box_of()]);
+        file["statement"]["solid_common_part"]["volume"] =
+            json!([volume * (1.0 - 1e-12), volume * (1.0 + 1e-12)]);
+        assert_holds(&file, &mut fractions);
+    }
+}
+
+/// Proofs of the library about turned unions hold in both checkers.
+#[test]
+fn common_parts_of_unions_hold_in_both_checkers() {
+    let mut fractions = start_fractions();
+    for seed in 0..cases(24) {
+        let random = &mut Random::new(seed);
+        let any_box = |random: &mut Random| {
+            let low = random.vector();
+            let made = ConvexPolyhedron::cuboid(low, low + random.vector().abs() + 0.25);
+            AsSolid::as_solid(&made.expect("a box")).expect("a solid").clone()
+        };
+        let pieces = [any_box(random), any_box(random), any_box(random)];
+        let union = Solid::from_pieces(&pieces).expect("a union");
+        let other = any_box(random);
+        let turn = Pose::new(random.rotation(), random.vector() * 0.5).expect("a pose");
+        let pair = Pair::new(union.at(turn), other.at(Pose::IDENTITY)).expect("a pair");
+        let pieces: Vec<&Solid> = pieces.iter().collect();
+        let options = VolumeOptions::default().with_accuracy(0.0).with_max_cells(300);
+        let proof = ProofFile::of_solid_common_part(&pair, [&pieces, &[&other]], options);
+        let proof = proof.expect("a proof");
+        assert!(proof.to_string().contains("interiors"), "{proof}");
+        let file: Value = serde_json::from_str(&proof.to_json()).expect("JSON");
+        assert_holds(&file, &mut fractions);
     }
 }
 

@@ -294,14 +294,14 @@ pub(super) fn bounds_body(exact: &ExactPair, body: usize, side: &Plane, is_high:
     exact.bodies[body].corners().all(|corner| side.side(corner) != outside)
 }
 
-/// Returns the root cell with all facets, and for each body whether the root contains it.
+/// Returns the root cell with all facets, and for each body whether the root contains it. Open shells may be anywhere.
 pub(super) fn root_cell(
     exact: &ExactPair,
     root: &Aabb,
 ) -> Result<(Cell, [bool; 2]), CommonPartError> {
     let fault = |axis: usize, at: f64| CommonPartError::Root { axis, at };
     let planes = box_planes(exact, root).ok_or_else(|| fault(0, root.low.x))?;
-    let mut contains = [true; 2];
+    let mut contains = exact.bodies.each_ref().map(|body| !body.has_open_shell);
     for (axis, sides) in planes.iter().enumerate() {
         for (k, side) in sides.iter().enumerate() {
             let bounds = [0, 1].map(|body| bounds_body(exact, body, side, k == 1));
@@ -375,6 +375,13 @@ pub(super) fn proven_cells(
         if !kind.is_cell() {
             if depth >= MAX_DEPTH {
                 return Err(fault(NodeFault::Depth));
+            }
+            // The parts of a cell that no facet meets are on the same side.
+            for body in [0, 1] {
+                if cell.fragments[body].is_empty() {
+                    let _ = decide_side(exact, &mut cell, body, &mut work)
+                        .ok_or_else(|| work.error())?;
+                }
             }
             let plane = kind.plane(exact).map_err(fault)?;
             let parts = cell.split(&plane, exact.unit);

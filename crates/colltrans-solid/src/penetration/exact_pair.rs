@@ -39,6 +39,8 @@ pub(super) struct ExactBody {
     /// Position in `facets` of each triangle of the solid.
     places: Vec<Option<u32>>,
     pieces: usize,
+    /// Whether the body has an open shell, which bounds nothing.
+    pub(super) has_open_shell: bool,
 }
 
 /// Both bodies, the moving one first.
@@ -147,7 +149,8 @@ impl ExactBody {
             });
         }
         let pieces = facets.iter().map(|facet| facet.piece + 1).max().unwrap_or(0);
-        Self { facets, places, pieces }
+        let has_open_shell = (0..solid.triangles().len()).any(|k| solid.is_open(k));
+        Self { facets, places, pieces, has_open_shell }
     }
 
     /// Returns the facet of a triangle of the solid; `None` if the triangle does not exist, has no area or belongs to an

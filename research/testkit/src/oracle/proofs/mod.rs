@@ -14,6 +14,7 @@
 
 pub mod casts;
 pub mod checkers;
+pub mod common_parts;
 pub mod file;
 pub mod free;
 pub mod motions;
@@ -85,7 +86,7 @@ pub struct Kind {
 }
 
 /// All kinds.
-pub const KINDS: [Kind; 12] = [
+pub const KINDS: [Kind; 13] = [
     casts::CASTS,
     casts::WITH_GAP,
     pairs::DISTANCES,
@@ -93,6 +94,7 @@ pub const KINDS: [Kind; 12] = [
     solids::CLEARANCES,
     solids::DISTANCES,
     solid_depths::DEPTHS,
+    common_parts::COMMON_PARTS,
     motions::CONVEX,
     motions::SOLIDS,
     paths::PATHS,

@@ -36,7 +36,7 @@ pub(crate) use help::{files_topic, json_topic};
 pub(crate) use layout::compact_command;
 pub(crate) use motion::MotionArguments;
 pub(crate) use path::PathArguments;
-pub(crate) use placed::{PlacedArguments, WithinArguments};
+pub(crate) use placed::{DepthArguments, PlacedArguments, WithinArguments};
 pub(crate) use values::{Angles, Place, direction, normalised_pose_note, normalised_poses_note};
 use values::{
     angles, answer_field, bytes, cuts, factor, length, picture, place, proof, solver, start,
@@ -76,7 +76,7 @@ pub(crate) enum Command {
     /// The penetration depth over all directions, with proven bounds, for convex bodies. For parts that are not convex the answer is
     /// the least tolerance at which they would not overlap.
     #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[DEPTH_NOTES]))]
-    Depth(Box<PlacedArguments>),
+    Depth(Box<DepthArguments>),
     /// List the pairs of parts of an assembly that interfere or are too near
     ///
     /// Every pair that is neither ignored nor glued is examined. The bounds of distances, depths and volumes are

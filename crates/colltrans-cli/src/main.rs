@@ -72,7 +72,7 @@ fn main() -> ExitCode {
         Command::Clearance(arguments) => scene::answer_clearance(&arguments),
         Command::Directions(arguments) => directions::run(&arguments),
         Command::Distance(arguments) => answer_pair(&arguments, PairQuestion::Distance),
-        Command::Depth(arguments) => answer_pair(&arguments, PairQuestion::Depth),
+        Command::Depth(arguments) => answer_pair(&arguments.into_placed(), PairQuestion::Depth),
         Command::Within(arguments) => {
             answer_pair(&arguments.placed, PairQuestion::Within(arguments.length))
         }

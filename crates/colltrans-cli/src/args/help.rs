@@ -408,6 +408,8 @@ Answers:
 Examples:
   Which way out, by the hull of both?
     colltrans depth peg.stl plate.stl --hull
+  Prove how much of two parts overlaps:
+    colltrans depth peg.stl plate.stl --common-part --save-proof proof.json
 
 `colltrans help files`: mesh formats, units, poses, exit codes; `colltrans help json`: fields.";
 

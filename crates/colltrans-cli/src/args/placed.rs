@@ -30,6 +30,9 @@ pub(crate) struct PlacedArguments {
     /// Write the proof and the bodies as a file for `colltrans verify`
     #[arg(long, value_name = "OUT.json", value_parser = proof)]
     pub(crate) save_proof: Option<PathBuf>,
+    /// Whether the proof is about the common part, for which all bodies are parts.
+    #[arg(skip)]
+    pub(crate) common_part: bool,
     #[command(flatten)]
     pub(crate) places: PlaceArguments,
     /// Accept surfaces that are not closed, without an interior
@@ -50,6 +53,22 @@ pub(crate) struct WithinArguments {
     pub(crate) placed: PlacedArguments,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct DepthArguments {
+    /// Prove how much of the parts overlaps: the volume of their common part, its box, and whether one contains the other
+    #[arg(long, requires = "save_proof")]
+    pub(crate) common_part: bool,
+    #[command(flatten)]
+    pub(crate) placed: PlacedArguments,
+}
+
+impl DepthArguments {
+    /// Returns the arguments of a query of two placed bodies.
+    pub(crate) fn into_placed(self) -> PlacedArguments {
+        PlacedArguments { common_part: self.common_part, ..self.placed }
+    }
+}
+
 impl PlacedArguments {
     /// Returns the files of both bodies. The question decides whether error messages suggest a scene.
     pub(crate) fn input_pair(&self, question: PairQuestion) -> Result<InputPair<'_>, Failure> {
@@ -64,9 +83,9 @@ impl PlacedArguments {
 
     /// Returns the kind of bodies that the options require.
     pub(crate) fn body_mode(&self) -> Result<BodyMode, Failure> {
-        let requires_parts = self.open || !self.from.is_empty();
-        let clash = "--convex-tolerance and --hull require two convex meshes; --from and --open require parts; drop \
-             one of the two groups";
+        let requires_parts = self.open || self.common_part || !self.from.is_empty();
+        let clash = "--convex-tolerance and --hull require two convex meshes; --from, --open and --common-part require parts; \
+             drop one of the two groups";
         BodyMode::from_requirements([self.hulls.requires_convex(self.body), requires_parts], clash)
     }
 

@@ -69,7 +69,11 @@ fn answer_parts(
     load::print_notes(&arguments.places, bodies.iter().flat_map(|body| &body.notes));
     let query = PartsPair { bodies: bodies.each_ref(), poses };
     let (record, proof) = if proves {
-        let (record, proof) = query.prove(question)?;
+        let (record, proof) = if arguments.common_part {
+            query.prove_common_part(question)?
+        } else {
+            query.prove(question)?
+        };
         (record, Some(proof))
     } else {
         (query.answer(question)?, None)

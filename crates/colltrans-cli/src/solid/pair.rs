@@ -1,6 +1,7 @@
 //! Distances and depths of two placed bodies of parts.
 
 use colltrans::record::{Ending, PairQuestion, Record};
+use colltrans::solid::VolumeOptions;
 use colltrans::{Pair, Pose, ProofFile, ProofFileError, QueryError, Solid};
 
 use super::{Body, PartsQuery, extent, renumber_features};
@@ -43,6 +44,21 @@ impl<'a> PartsPair<'a> {
                 Ok((self.answer(question)?, Err(failed)))
             }
         }
+    }
+
+    /// Answers the question, and proves the common part.
+    ///
+    /// # Errors
+    /// The query fails. A failure of the proof is part of the result.
+    pub(crate) fn prove_common_part(
+        &self,
+        question: PairQuestion,
+    ) -> Result<(Record, ProofResult), QueryError> {
+        let [moving, fixed] = self.bodies.map(Body::solids);
+        let options = VolumeOptions::default();
+        let proof = ProofFile::of_solid_common_part(&self.pair()?, [&moving, &fixed], options);
+        let proof = proof.map_err(|error| Failure::new(Code::Query, error.to_string()));
+        Ok((self.answer(question)?, proof))
     }
 
     /// Adds the names of files to a record.

@@ -116,6 +116,9 @@ fn saved_proofs_hold_in_both_checkers() {
         ("depth", &DEEP, &[], "a translation of the moving body by 0.25"),
         ("depth", &APART, &[], "the bodies do not overlap"),
         ("depth", &DENTED, &[], "the bodies are apart after a translation of at most 0.1"),
+        ("depth", &DENTED, &["--common-part"], "no body contains the other, the common part"),
+        ("depth", &DEEP, &["--common-part"], "no body contains the other, the common part"),
+        ("depth", &APART, &["--common-part"], "the interiors have no common point"),
         ("within", &APART, &within("9"), "the bodies are at most "),
         ("within", &APART, &within("1"), "the bodies are at least "),
         ("within", &PARTS, &within("9"), "the bodies are at most "),
@@ -125,7 +128,8 @@ fn saved_proofs_hold_in_both_checkers() {
         let text = answered(folder, &["verify", "proof.json"]);
         assert!(text.starts_with(&format!("holds: {said}")), "{text}");
         // The checker in fractions does not use the covers of parts.
-        let is_part = bodies == &DENTED || bodies == &PARTS && said.contains("between");
+        let has_cover = bodies == &DENTED && more.is_empty();
+        let is_part = has_cover || bodies == &PARTS && said.contains("between");
         checked_in_fractions(folder, if is_part { 7 } else { 0 });
     }
     // The answer with a proof has the same bits.
@@ -186,6 +190,11 @@ fn invalid_distance_arguments_are_rejected() {
         2,
         &["--hull", "--open"],
     );
+    let without = ["depth", "cube.off", "dent.off", "--common-part"];
+    refused(folder, &without, 2, &["--save-proof"]);
+    let hull =
+        ["depth", "cube.off", "cube.off", "--common-part", "--save-proof", "p.json", "--hull"];
+    refused(folder, &hull, 2, &["--hull", "--common-part"]);
     let over = ["distance", "cube.off", "cube.off", "--save-proof", "cube.off"];
     refused(folder, &over, 3, &["is the same file"]);
     let nan = ["distance", "cube.off", "cube.off", "--moving-pose", "nan,0,0"];

@@ -98,7 +98,7 @@ def report(folder, vertices, count):
         "one call, tuple and Pose": lambda: colltrans.cast(
             *bodies, (0.0, 0.0, -1.0), moving_pose=placed
         ),
-        "one call, Cast": query.first_contact,
+        "one call, Cast": query.cast,
     }
     numbers = {"a": clouds[0], "b": clouds[1], "rows": rows, "same": np.tile(rows[0], (count, 1))}
     for name, values in numbers.items():

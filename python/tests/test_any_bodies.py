@@ -12,22 +12,22 @@ import pytest
 from conftest import ROOT
 
 from colltrans import (
-    BuildError,
+    Cast,
     ConvexPolyhedron,
-    Failed,
     InputError,
     Intersection,
-    QueryError,
     Solid,
     SolidBlocked,
     SolidCast,
-    SolidColumns,
     cast,
     cast_many,
     clearance,
     clearance_many,
+    contact_range_many,
     intersects,
 )
+from colltrans.columns import Failed, SolidColumns
+from colltrans.errors import BuildError, QueryError
 
 DOWN = [0.0, 0, -1]
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
@@ -43,25 +43,27 @@ def test_convex_bodies_and_solids_share_each_call() -> None:
         answer: Any = clearance(moving, fixed, DOWN, moving_pose=[1.3, 0.2, 7], tolerance=1e-6)
         assert repr(answer) == repr(known.clearance())
         assert answer.query.tolerance == 1e-6
-        assert intersects(moving, fixed, DOWN, moving_pose=[1.3, 0.2, 7]) is known.intersects()
-    assert isinstance(intersects(CUBE, CUBE, DOWN), Intersection)
+        assert intersects(moving, fixed, moving_pose=[1.3, 0.2, 7]) is known.intersects()
+    assert isinstance(intersects(CUBE, CUBE), Intersection)
     within: Any = clearance(BOLT, PLATE, DOWN, moving_pose=[3, 0, 0], ignore_start_overlaps=True)
     assert type(within).__name__ != "SolidOverlapping"
 
 
 def test_options_of_the_other_kind_of_body_are_refused() -> None:
     with pytest.raises(QueryError, match="tolerance and ignore_start_overlaps are for solids"):
-        clearance(CUBE, CUBE, DOWN, tolerance=1e-6)  # type: ignore[call-overload]
+        clearance(CUBE, CUBE, DOWN, tolerance=1e-6)
     with pytest.raises(QueryError, match="graze_tolerance and solver are for convex bodies"):
-        intersects(CUBE, PLATE, DOWN, graze_tolerance=1e-6)  # type: ignore[call-overload]
+        cast(CUBE, PLATE, DOWN, graze_tolerance=1e-6)
     with pytest.raises(QueryError, match="unknown solver"):
         clearance(CUBE, PLATE, DOWN, solver="newton")  # type: ignore[call-overload]
     with pytest.raises(TypeError, match="fixed: neither a ConvexPolyhedron nor a Solid, but str"):
         clearance(CUBE, "cube", DOWN)  # type: ignore[call-overload]
-    with pytest.raises(TypeError):
-        cast(CUBE, PLATE, DOWN)  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="solids have no casts; call clearance_many"):
-        cast_many(CUBE, [PLATE], DOWN)  # type: ignore[list-item]
+    with pytest.raises(TypeError, match="Solid is not a ConvexPolyhedron"):
+        Cast(CUBE, PLATE, DOWN)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="contact ranges of solids are not answered"):
+        contact_range_many(CUBE, [PLATE], DOWN)  # type: ignore[list-item]
+    with pytest.raises(InputError, match="are for solids"):
+        cast_many(CUBE, CUBE, DOWN, tolerance=1e-3)
     with pytest.raises(InputError, match="graze_tolerance, solver: are for convex bodies"):
         clearance_many(CUBE, PLATE, DOWN, graze_tolerance=1e-3)  # type: ignore[call-overload]
     with pytest.raises(InputError, match="are for solids"):

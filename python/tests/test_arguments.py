@@ -13,7 +13,8 @@ from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
 import colltrans
-from colltrans import ColltransError, ConvexPolyhedron, InputError, Pose, PoseError, cast, cast_many
+from colltrans import ColltransError, ConvexPolyhedron, InputError, Pose, cast, cast_many
+from colltrans.errors import PoseError
 
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 FAR = ConvexPolyhedron.cuboid([9, 9, 9], [10, 10, 10])
@@ -81,13 +82,17 @@ INSTEAD: list[tuple[Callable[[], Any], type[Exception], list[str]]] = [
         InputError,
         ["'turn' takes a dict", "point", "axis", "radians", "not a list"],
     ),
-    (lambda: CALLED.first_contact(CUBE, CUBE, [SLIDE]), InputError, ["motion_many"]),
+    (lambda: CALLED.motion(CUBE, CUBE, [SLIDE]), InputError, ["motion_many"]),
     (
         lambda: CALLED.Assembly([CUBE]),
         InputError,
         ["parts: a dict", "not a list", "Assembly.read"],
     ),
-    (lambda: CALLED.Assembly({"a": CUBE}), InputError, ["parts['a']: a pair (vertices, faces)"]),
+    (
+        lambda: CALLED.Assembly({"a": "cube.obj"}),
+        InputError,
+        ["parts['a']: a pair (vertices, faces) or a mesh", "not a str"],
+    ),
     (
         lambda: CALLED_ARM.first_contact([[0.0] * 3], scene=[CUBE]),
         InputError,
@@ -98,12 +103,14 @@ INSTEAD: list[tuple[Callable[[], Any], type[Exception], list[str]]] = [
     (lambda: cast(CUBE, CUBE, "z"), InputError, ["direction", "three numbers"]),
     (
         lambda: colltrans.read("part.step"),
-        colltrans.MeshError,
+        colltrans.errors.MeshError,
         ["part.step", "Assembly.read(path)"],
     ),
-    (lambda: colltrans.Solid.read("part.GLB"), colltrans.MeshError, ["Assembly.read(path)"]),
+    (lambda: colltrans.Solid.read("part.GLB"), colltrans.errors.MeshError, ["Assembly.read(path)"]),
     (
-        lambda: colltrans.motion_clearance(CUBE, FAR, SLIDE).save_proof("no/such/proof.json"),
+        lambda: colltrans.motions.motion_clearance(CUBE, FAR, SLIDE).save_proof(
+            "no/such/proof.json"
+        ),
         FileNotFoundError,
         ["no/such/proof.json"],
     ),
@@ -235,8 +242,24 @@ def test_invalid_rotations_are_refused_with_the_message_of_the_library() -> None
         Pose(np.ones((4, 4)))
     with pytest.raises(PoseError, match="not finite"):
         Pose([np.nan, 0, 0])
-    with pytest.raises(InputError, match=r"\(3, 3\)"):
-        Pose(np.eye(3))
+    with pytest.raises(InputError, match=r"shape \(2, 3\), not .*\(3, 3\)"):
+        Pose(np.eye(2, 3))
+
+
+def test_an_array_of_three_rows_is_a_rotation_unless_rows_are_taken() -> None:
+    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    pose = Pose(turn)
+    assert np.array_equal(pose.rotation, turn) and not pose.translation.any()
+    with pytest.raises(PoseError, match="is not a rotation"):
+        Pose(np.zeros((3, 3)))
+    whole = np.eye(4)
+    whole[:3, :3] = turn
+    known = cast(CUBE, CUBE, [1, 0, 0], moving_pose=whole)
+    assert repr(cast(CUBE, CUBE, [1, 0, 0], moving_pose=turn)) == repr(known)
+    rows = cast_many(CUBE, CUBE, [1, 0, 0], moving_pose=np.stack([turn] * 4))
+    assert [repr(row) for row in rows.answers()] == [repr(known)] * 4
+    with pytest.raises(InputError, match=r"\(3, 3\) is ambiguous.*Pose\(matrix\)"):
+        cast_many(CUBE, CUBE, [1, 0, 0], moving_pose=turn)
 
 
 ANYTHING = arrays.arrays(

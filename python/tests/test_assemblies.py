@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-from colltrans import Assembly, AssemblyError, InputError, Stage
+from colltrans import Assembly, InputError
+from colltrans.assembly import Stage
+from colltrans.errors import AssemblyError
 
 GEARBOX = ROOT / "data" / "gearbox_small"
 BOX = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from test_assemblies import GEARBOX, cuboid
 
-from colltrans import Assembly, AssemblyError, InputError, audit
+from colltrans import Assembly, InputError
+from colltrans.assembly import audit
+from colltrans.errors import AssemblyError
 
 
 def test_columns_equal_those_of_the_command_line(cli: Path) -> None:

@@ -162,7 +162,7 @@ def test_the_number_of_threads_does_not_change_answers(many: Any) -> None:
 
 def test_rows_equal_single_answers() -> None:
     columns = asked_at_once(SETTINGS, colltrans.clearance_many, None)
-    for row, alone in zip(columns, asked(SETTINGS, colltrans.clearance), strict=True):
+    for row, alone in zip(columns.answers(), asked(SETTINGS, colltrans.clearance), strict=True):
         assert row.to_dict() == alone.to_dict()
 
 

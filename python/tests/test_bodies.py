@@ -11,19 +11,17 @@ from conftest import ROOT, draw
 
 import colltrans
 from colltrans import (
-    BuildError,
-    CaseError,
     Cast,
     ConvexPolyhedron,
     InputError,
-    MeshError,
     Motion,
     MotionCast,
-    OffsetReport,
     Pose,
     SolidCast,
     cast_many,
 )
+from colltrans.answers import OffsetReport
+from colltrans.errors import BuildError, CaseError, MeshError
 
 CORNERS = np.vstack([np.zeros(3), np.eye(3)])
 FACES = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
@@ -227,11 +225,11 @@ def test_answers_report_the_dents_of_meshes_that_are_convex_by_tolerance(tmp_pat
         high = Pose([0, 0, 3])
         swept = MotionCast(cube, flat, moving_motion=Motion.slide([0, 0, 9]), fixed_motion=high)
         answers: list[Any] = [
-            Cast(cube, flat, z, fixed_pose=high).first_contact(),
+            Cast(cube, flat, z, fixed_pose=high).cast(),
             Cast(cube, flat, z, fixed_pose=high).clearance(),
             colltrans.distance(cube, flat, fixed_pose=high),
             SolidCast(cube, flat, z, fixed_pose=high).clearance(),
-            swept.first_contact(),
+            swept.motion(),
         ]
         for answer in answers:
             assert answer.to_dict()["dents"] == {"fixed": flat.dent}, answer

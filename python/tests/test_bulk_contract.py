@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 from conftest import ROOT, Batch
 
-from colltrans import InputError, Solid, clearance_many, motion_clearance_many
+from colltrans import InputError, Solid, clearance_many
+from colltrans.motions import motion_clearance_many
 
 pa = pytest.importorskip("pyarrow")
 pq = pytest.importorskip("pyarrow.parquet")

@@ -11,15 +11,8 @@ from typing import Any
 import pytest
 from test_check import always, changed, check, containers, value_at
 
-from colltrans import (
-    ConvexPolyhedron,
-    Motion,
-    Obstacles,
-    Robot,
-    Solid,
-    clearance,
-    first_contact,
-)
+import colltrans
+from colltrans import ConvexPolyhedron, Motion, Obstacles, Robot, Solid, clearance
 
 DOWN = [0.0, 0.0, -1.0]
 BALL = ConvexPolyhedron.sphere(0.5)
@@ -60,7 +53,7 @@ def bar(corner: list[float], **options: Any) -> Any:
 
 def turning(moving: Any, fixed: Any, **options: Any) -> Any:
     swing = Motion.turn([0, 0, 0], [0, 1, 0], degrees=40, pose=[0.5, 0.5, 4])
-    return first_contact(
+    return colltrans.motion(
         moving, fixed, swing, Motion.still([0, 0, -1]), **{"tolerance": 0, **options}
     )
 

@@ -30,7 +30,7 @@ def answers() -> list[Any]:
     for start in ([-4, 0.3, 0], [-3, 1, 0], [-3, 5, 0], [4, 0.3, 0], [0.2, 0.3, 0.1]):
         for body in (CUBE, CLOUD):
             query = Cast(body, CUBE, [1, 0.01, 0], moving_pose=start, graze_tolerance=1e-3)
-            found += [query.first_contact(), query.contact_range(), query.clearance()]
+            found += [query.cast(), query.contact_range(), query.clearance()]
             found += [query.directional_depth(), query.intersects(), query]
     bolt, plate = Solid.read(ROOT / "data/bolt.stl"), Solid.read(ROOT / "data/plate.off")
     for height in (7, 0.5, -40):

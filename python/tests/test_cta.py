@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from colltrans import Contact, ConvexPolyhedron, Cta, QueryError, Tracker, cast, cast_many
+from colltrans import Contact, ConvexPolyhedron, Cta, Tracker, cast, cast_many
+from colltrans.errors import QueryError
 
 RANDOM = np.random.default_rng(3)
 BALL = ConvexPolyhedron([point / np.linalg.norm(point) for point in RANDOM.normal(size=(400, 3))])

@@ -8,15 +8,9 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-from colltrans import (
-    ConvexPolyhedron,
-    FreeDirections,
-    QueryError,
-    Solid,
-    SolidCast,
-    SolidFree,
-    free_directions,
-)
+from colltrans import ConvexPolyhedron, Solid, SolidCast, SolidFree, free_directions
+from colltrans.errors import QueryError
+from colltrans.removal import FreeDirections
 
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 BOLT, PLATE = ROOT / "data" / "bolt.stl", ROOT / "data" / "plate.off"

@@ -17,15 +17,15 @@ from colltrans import (
     ConvexPolyhedron,
     Depth,
     Distance,
-    Failed,
     InputError,
     OverlapDepth,
     Pair,
-    QueryError,
     Solid,
     Within,
     check,
 )
+from colltrans.columns import Failed
+from colltrans.errors import QueryError
 
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 BOLT, PLATE = Solid.read(ROOT / "data/bolt.stl"), Solid.read(ROOT / "data/plate.off")

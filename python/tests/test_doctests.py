@@ -1,12 +1,13 @@
 """Runs the examples of all docstrings and of the pages about Python."""
 
 import doctest
+import importlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from conftest import ROOT
+from test_docs import GROUPS, public_names
 
 import colltrans
 
@@ -30,8 +31,10 @@ NEEDED = {"cad": ["plotly"], "data": ["pyarrow"], "python": ["plotly"]}
 
 
 def docstrings() -> Iterator[tuple[str, str]]:
-    for name in colltrans.__all__:
-        thing: Any = getattr(colltrans, name)
+    yield "colltrans", colltrans.__doc__ or ""
+    for group in GROUPS:
+        yield group, importlib.import_module(f"colltrans.{group}").__doc__ or ""
+    for name, thing in public_names().items():
         yield name, thing.__doc__ or ""
         # In a fixed order: the extension adds members of a class in any.
         for member, value in sorted(vars(thing).items()) if isinstance(thing, type) else ():
@@ -68,7 +71,6 @@ def run(name: str, text: str) -> None:
 
 
 def test_every_public_callable_has_an_example() -> None:
-    for name in colltrans.__all__:
-        thing = getattr(colltrans, name)
+    for name, thing in public_names().items():
         if not isinstance(thing, type) and name != "read":
             assert ">>>" in (thing.__doc__ or ""), name

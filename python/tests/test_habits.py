@@ -16,7 +16,6 @@ from colltrans import (
     Assembly,
     Cast,
     ConvexPolyhedron,
-    Failed,
     InputError,
     Motion,
     MotionCast,
@@ -26,10 +25,10 @@ from colltrans import (
     cast,
     cast_many,
     clearance_many,
-    concatenate,
     contact_range,
     distance_many,
 )
+from colltrans.columns import Failed, concatenate
 from colltrans.pictures import EDGE, FIXED, MOVING, TOUCH
 
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
@@ -127,11 +126,11 @@ def test_masked_rows_are_not_computed() -> None:
     index: Any = np.ma.array([0, 0], mask=[True, False])
     told = cast_many([CUBE], CUBE, AHEAD, moving_index=index, moving_pose=[-3, 0, 0])
     assert told.outcome.tolist() == ["error", "contact"]
-    with pytest.raises(colltrans.PoseError, match="NaN"):
+    with pytest.raises(colltrans.errors.PoseError, match="NaN"):
         cast(CUBE, CUBE, AHEAD, moving_pose=masked[1])
-    with pytest.raises(colltrans.QueryError):
+    with pytest.raises(colltrans.errors.QueryError):
         cast(CUBE, CUBE, np.ma.array(AHEAD, mask=[True, False, False]), moving_pose=[-3, 0, 0])
-    with pytest.raises(colltrans.BuildError, match="point 1 is not finite"):
+    with pytest.raises(colltrans.errors.BuildError, match="point 1 is not finite"):
         ConvexPolyhedron(masked)
     whole = cast(CUBE, CUBE, np.ma.array(AHEAD), moving_pose=masked[0])
     assert isinstance(whole, colltrans.Contact) and whole.translation == 2.0
@@ -149,7 +148,7 @@ def test_the_last_contact_is_in_the_direction_asked() -> None:
     assert isinstance(found, colltrans.ContactRange)
     last = found.last
     assert (last.translation, found.interval[1]) == (8.0, 8.0)
-    assert last.bounds[0] <= 8.0 <= last.bounds[1] < 8.0 + 1e-12
+    assert last.lower <= 8.0 <= last.upper < 8.0 + 1e-12
     assert last.query.direction.tolist() == [0.5, 0, 0]
     turned = last.turned
     assert isinstance(turned, colltrans.Contact) and turned.translation == -8.0
@@ -159,7 +158,7 @@ def test_the_last_contact_is_in_the_direction_asked() -> None:
     again = pickle.loads(pickle.dumps(last))
     assert repr(again) == repr(last) == "LastContact(translation=8.0, normal=[-1.0, 0.0, 0.0])"
     match last:
-        case colltrans.LastContact(translation, normal):
+        case colltrans.answers.LastContact(translation, normal):
             assert translation == 8.0 and normal[0] == -1.0
     grazing = contact_range(CUBE, CUBE, AHEAD, moving_pose=[-3, 1, 0])
     assert isinstance(grazing, colltrans.ContactRange)
@@ -174,12 +173,12 @@ def things() -> list[Any]:
     query = Cast(CUBE, CUBE, AHEAD, moving_pose=[-3, 0.5, 0])
     flat = ConvexPolyhedron([[0, 0, 0], [1, 0, 0]])
     answers: list[Any] = [
-        query.first_contact(),
+        query.cast(),
         query.contact_range(),
         query.clearance(),
         over.clearance(),
     ]
-    answers += [Pair(CUBE, CUBE, moving_pose=[-3, 0, 0]).distance(), moves.first_contact()]
+    answers += [Pair(CUBE, CUBE, moving_pose=[-3, 0, 0]).distance(), moves.motion()]
     return [CUBE, flat, solid, query, over, moves, Pair(CUBE, solid), *answers]
 
 
@@ -243,7 +242,7 @@ def test_long_calls_release_the_interpreter_lock() -> None:
     large = ConvexPolyhedron(sphere / np.linalg.norm(sphere, axis=1, keepdims=True))
     placed: dict[str, Any] = {"moving_pose": [-0.5, 0.1, 0.2]}
     asked = [
-        Cast(large, large, AHEAD, **placed, solver="cta").first_contact,
+        Cast(large, large, AHEAD, **placed, solver="cta").cast,
         Pair(large, large, **placed).depth,
     ]
     stopped = threading.Event()

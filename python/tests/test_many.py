@@ -15,11 +15,9 @@ from conftest import draw
 
 import colltrans
 from colltrans import (
-    BuildError,
     ColltransError,
     Contact,
     ConvexPolyhedron,
-    Failed,
     InputError,
     Pose,
     Separated,
@@ -28,6 +26,8 @@ from colltrans import (
     clearance_many,
     contact_range_many,
 )
+from colltrans.columns import Failed
+from colltrans.errors import BuildError
 
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 PLATE = ConvexPolyhedron.cuboid([-2, -2, -1], [2, 2, 0])
@@ -43,7 +43,8 @@ def test_single_values_apply_to_all_rows() -> None:
     assert longer.translation.tolist() == [2, 1]
     assert cast_many(CUBE, CUBE, AHEAD, moving_pose=[-3, 0, 0]).translation.tolist() == [2]
     grazes = cast_many(CUBE, CUBE, AHEAD, moving_pose=[-3, 0.99, 0], graze_tolerance=[0, 0.1])
-    assert [type(row).__name__ for row in grazes] == ["Contact", "Grazing"]
+    assert [row.outcome for row in grazes] == ["contact", "grazing"]
+    assert [type(answer).__name__ for answer in grazes.answers()] == ["Contact", "Grazing"]
 
 
 def test_no_rows_give_empty_columns() -> None:
@@ -97,13 +98,13 @@ def test_bad_rows_are_errors_and_lose_nothing() -> None:
     [
         ({"moving_pose": np.zeros((4, 3)), "fixed_pose": np.zeros((5, 3))}, "4 rows.*5 rows"),
         ({"moving_pose": np.zeros((4, 5))}, r"moving_pose: an array of shape \(4, 5\)"),
-        ({"moving_pose": np.zeros((4, 3, 3))}, r"\(4, 3, 3\)"),
+        ({"moving_pose": np.zeros((4, 3, 5))}, r"\(4, 3, 5\), not .*\(3, 3\), \(3, 4\)"),
         ({"direction": np.zeros((4, 2))}, r"direction: an array of shape \(4, 2\)"),
         (
             {"graze_tolerance": np.zeros((2, 2)), "moving_pose": np.zeros((4, 3))},
             r"axes that cannot be broadcast: moving_pose \(4,\), graze_tolerance \(2, 2\)",
         ),
-        ({"moving_pose": np.zeros((5, 3, 3))}, "is ambiguous: give rotations as"),
+        ({"moving_pose": np.eye(3)}, r"is ambiguous: .* Give Pose\(matrix\), or a list"),
         ({"moving_index": [0.5]}, "moving_index: not an array of whole numbers"),
         ({"moving_index": 0}, "moving_index: not an array of whole numbers"),
         ({"moving_index": np.array([2**64 - 1], np.uint64)}, "too large"),
@@ -222,8 +223,13 @@ except KeyboardInterrupt:
 
 def test_a_single_call_equals_its_row_of_many() -> None:
     one = cast(CUBE, PLATE, [0, 0, -1], moving_pose=[0, 0, 5])
-    (row,) = cast_many(CUBE, PLATE, [0, 0, -1], moving_pose=[0, 0, 5])
-    assert repr(one) == repr(row)
+    columns = cast_many(CUBE, PLATE, [0, 0, -1], moving_pose=[0, 0, 5])
+    (answer,), (row,) = columns.answers(), columns
+    assert repr(one) == repr(answer) == repr(columns[0])
+    assert isinstance(one, Contact)
+    assert (row.outcome, row.translation) == ("contact", one.translation)
+    assert [row.normal_x, row.normal_y, row.normal_z] == one.normal.tolist()
+    assert [row.translation_lower, row.translation_upper] == one.to_dict()["translation_bounds"]
     assert colltrans.__all__ == sorted(colltrans.__all__)
 
 

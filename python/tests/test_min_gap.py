@@ -13,7 +13,6 @@ from colltrans import (
     Cast,
     ConvexPolyhedron,
     Obstacles,
-    QueryError,
     Solid,
     SolidBlocked,
     SolidCast,
@@ -26,7 +25,9 @@ from colltrans import (
     contact_range,
     contact_range_many,
     intersects,
+    within,
 )
+from colltrans.errors import QueryError
 
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 ABOVE = [0.0, 0, 4]
@@ -36,19 +37,19 @@ DOWN = [0.0, 0, -1]
 def test_a_cast_with_a_gap_stops_at_the_gap() -> None:
     query = Cast(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=0.25)
     assert query.min_gap == 0.25
-    found: Any = query.first_contact()
+    found: Any = query.cast()
     assert found.certificate.lower <= 2.75 <= found.certificate.upper
     assert found.certificate.verify() < 1e-12
     assert found.to_dict()["min_gap"] == 0.25
     both: Any = contact_range(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=0.25)
     assert both.interval == (2.75, 5.25)
-    assert bool(intersects(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=3.5))
+    assert bool(Cast(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=3.5).intersects())
     tracked: Any = Tracker().clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=0.25)
     assert tracked.distance == pytest.approx(2.75)
     assert clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=3.5).distance is None
     for again in (copy.copy(query), pickle.loads(pickle.dumps(query))):
         assert again.min_gap == 0.25
-        same: Any = again.first_contact()
+        same: Any = again.cast()
         assert same.translation == 2.75
     for answer in (found, both, clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, min_gap=3.5)):
         text = answer.proof_json()
@@ -78,8 +79,16 @@ def test_solids_stop_at_the_gap() -> None:
         answer, proof = again.certified_clearance()
         assert repr(answer) == repr(kept)
         query.verify(proof)
-        with pytest.raises(QueryError, match="call within"):
-            meets(moving, fixed, DOWN, min_gap=0.5)
+        with pytest.raises(TypeError, match="min_gap"):
+            meets(moving, fixed, min_gap=0.5)
+    # A quarter of a unit apart: they do not meet, but are closer than the gap.
+    apart: dict[str, Any] = {"moving_pose": [0, 0, 1.25]}
+    block = Solid.from_pieces([CUBE])
+    assert not meets(block, CUBE, **apart)
+    for length, closer in ((0.5, True), (0.125, False)):
+        assert within(block, CUBE, length, **apart).closer is closer
+        query = SolidCast(block, CUBE, DOWN, **apart, tolerance=0, min_gap=length)
+        assert query.intersects() is closer
 
 
 @pytest.mark.parametrize("gap", [-1.0, math.nan, math.inf, 1e70])
@@ -140,6 +149,6 @@ def test_scene_queries_stop_at_the_gap() -> None:
     assert obstacles.clearance(CUBE, DOWN, aside).outcome == "free"
     assert obstacles.clearance(CUBE, DOWN, aside, min_gap=0.5).outcome == "blocked"
     many = obstacles.clearance_many(CUBE, DOWN, [[24.25, 0, 4], aside], min_gap=0.5)
-    assert many["outcome"].tolist() == [0, 0]
+    assert many["outcome"].tolist() == ["blocked", "blocked"]
     alone = obstacles.clearance(CUBE, DOWN, aside, min_gap=0.5)
     assert many["distance"][1] == alone.distance

@@ -15,24 +15,20 @@ from test_schema import conform
 
 import colltrans
 from colltrans import (
-    CaseError,
     ConvexPolyhedron,
-    Failed,
     FirstContact,
     InputError,
     Motion,
     MotionCast,
-    MotionClearance,
     Pose,
-    QueryError,
     Solid,
     check,
     clearance,
-    first_contact,
-    motion_clearance,
-    motion_clearance_many,
     motion_many,
 )
+from colltrans.columns import Failed
+from colltrans.errors import CaseError, QueryError
+from colltrans.motions import MotionClearance, motion_clearance, motion_clearance_many
 
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 CLOUD = ConvexPolyhedron(np.random.default_rng(1).normal(size=(40, 3)))
@@ -87,8 +83,10 @@ def test_rows_have_the_bits_of_the_command_line(batch: Batch, min_gap: float) ->
         assert alone.to_dict() == answer
         time = answer.get("time", {})
         found = [columns.lower[i], columns.upper[i]]
-        expected = [time.get(end, np.nan) for end in ("lower", "upper")]
-        assert np.array_equal(found, expected, equal_nan=True)
+        never = [1.0, math.inf] if answer["outcome"] == "free" else [0.0, 0.0]
+        assert found == ([time["lower"], time.get("upper", math.inf)] if time else never)
+        assert found == [alone.lower, alone.upper]
+        assert np.array_equal([columns.value[i]], np.array([alone.value], float), equal_nan=True)
         none = [np.nan] * 3
         assert np.array_equal(columns.normal[i], answer.get("normal", none), equal_nan=True)
         assert np.array_equal(columns.point[i], answer.get("point", none), equal_nan=True)
@@ -98,19 +96,19 @@ def test_rows_have_the_bits_of_the_command_line(batch: Batch, min_gap: float) ->
 def answers() -> list[FirstContact]:
     turn = Motion.turn([0, 0, 0], [0, 0, 1], radians=3, pose=[2, 0, 0])
     found = [
-        first_contact(CUBE, CUBE, turn, Pose([-1.5, 1.5, 0.25])),
-        first_contact(CUBE, CUBE, turn, Pose([-1.5, 1.5, 0.25]), min_gap=0.25),
-        first_contact(CUBE, CUBE, turn, Motion.slide([0, 0, 5], pose=[-1.5, 1.5, 0.25])),
-        first_contact(CUBE, CUBE, Motion.slide([1, 0, 0])),
-        first_contact(
+        colltrans.motion(CUBE, CUBE, turn, Pose([-1.5, 1.5, 0.25])),
+        colltrans.motion(CUBE, CUBE, turn, Pose([-1.5, 1.5, 0.25]), min_gap=0.25),
+        colltrans.motion(CUBE, CUBE, turn, Motion.slide([0, 0, 5], pose=[-1.5, 1.5, 0.25])),
+        colltrans.motion(CUBE, CUBE, Motion.slide([1, 0, 0])),
+        colltrans.motion(
             CUBE, CUBE, Motion.turn([0.5, 0.5, 0], [0, 0, 1], radians=2), Pose([0, 0, -1])
         ),
     ]
     rest = Motion.turn([0.5, 0.5, 0], [0, 0, 1], radians=2)
-    found.append(first_contact(CUBE, CUBE, rest, Pose([0, 0, -1]), tolerance=1e-9))
+    found.append(colltrans.motion(CUBE, CUBE, rest, Pose([0, 0, -1]), tolerance=1e-9))
     down = Motion.screw([0, 0, 0], [0, 0, 1], radians=1, rise=-20, pose=[0, 0, 9])
-    found.append(first_contact(BOLT, PLATE, down))
-    found.append(first_contact(CUBE, PLATE, Motion.slide([0, 0, 9], pose=[0, 0, 30])))
+    found.append(colltrans.motion(BOLT, PLATE, down))
+    found.append(colltrans.motion(CUBE, PLATE, Motion.slide([0, 0, 9], pose=[0, 0, 30])))
     return found
 
 
@@ -135,9 +133,9 @@ def test_answers_give_times_points_and_normals() -> None:
     assert contact.poses is not None and contact.features is not None
     assert contact.poses[0] == contact.query.moving_motion.at(contact.lower)
     assert contact.point is not None and contact.normal is not None and contact.looks > 3
-    assert (free.lower, free.upper, free.poses, free.point) == (1.0, None, None, None)
+    assert (free.lower, free.upper, free.poses, free.point) == (1.0, math.inf, None, None)
     assert (over.lower, over.upper) == (0.0, 0.0)
-    assert (touching.lower, touching.upper) == (0.0, None)
+    assert (touching.lower, touching.upper) == (0.0, math.inf)
     assert resting.query.tolerance == 1e-9
     # The bolt moves down its hole while it turns: 9 of 20.
     assert abs(solid.lower - 0.45) < 1e-6
@@ -150,7 +148,7 @@ def test_answers_and_queries_come_back_with_their_bits(answer: FirstContact) -> 
     for again in (pickle.loads(pickle.dumps(answer)), copy.deepcopy(answer)):
         assert again.to_dict() == answer.to_dict() and repr(again) == repr(answer)
     query = pickle.loads(pickle.dumps(answer.query))
-    assert query.first_contact().to_dict() == answer.to_dict()
+    assert query.motion().to_dict() == answer.to_dict()
     assert query.moving_motion == answer.query.moving_motion
     conform("motion", answer.to_dict())
     answer.verify()
@@ -188,7 +186,7 @@ def test_random_proofs_hold_in_fractions() -> None:
         ][k % 5]
         other = Motion.turn(point * 3, way, radians=angle / 3) if k % 3 == 0 else None
         min_gap = [0.0, 0.0, 1e-9, 0.25][k % 4]
-        found = first_contact(bodies[0], bodies[1], motion, other, min_gap=min_gap)
+        found = colltrans.motion(bodies[0], bodies[1], motion, other, min_gap=min_gap)
         report = check.check(found.proof_json())
         assert report.holds or found.lower == 0
         seen[found.outcome] = seen.get(found.outcome, 0) + 1
@@ -225,9 +223,9 @@ def test_a_query_is_saved_and_replayed(cli: Path, tmp_path: Path) -> None:
     (tmp_path / "case.json").write_text(query.to_json())
     words: list[str | Path] = [cli, "replay", tmp_path / "case.json", "--json"]
     told = subprocess.run(words, capture_output=True, text=True)
-    assert json.loads(told.stdout) == query.first_contact().to_dict()
+    assert json.loads(told.stdout) == query.motion().to_dict()
     again = MotionCast.from_json(query.to_json())
-    assert again.first_contact().to_dict() == query.first_contact().to_dict()
+    assert again.motion().to_dict() == query.motion().to_dict()
     assert again.min_gap == 0.25 and again.to_json() == query.to_json()
     with pytest.raises(CaseError, match="has no file"):
         answers()[-1].query.to_json()
@@ -248,11 +246,11 @@ def test_invalid_arguments_are_refused() -> None:
         Motion.slide([1, 2])
     slide = Motion.slide([1, 0, 0])
     with pytest.raises(QueryError, match="min_gap and tolerance are both given"):
-        first_contact(CUBE, CUBE, slide, min_gap=1, tolerance=1)
+        colltrans.motion(CUBE, CUBE, slide, min_gap=1, tolerance=1)
     with pytest.raises(QueryError, match="-1"):
-        first_contact(CUBE, CUBE, slide, min_gap=-1)
+        colltrans.motion(CUBE, CUBE, slide, min_gap=-1)
     with pytest.raises(TypeError, match="neither a ConvexPolyhedron nor a Solid"):
-        first_contact("cube", CUBE, slide)  # type: ignore[arg-type]
+        colltrans.motion("cube", CUBE, slide)  # type: ignore[arg-type]
     turn: dict[str, Any] = {"point": [0, 0, 0], "axis": [0, 0, 1], "radians": [1, 2]}
     with pytest.raises(InputError, match="'turn' has point, axis, radians"):
         motion_many(CUBE, CUBE, {"turn": {**turn, "rise": 1}})
@@ -278,7 +276,7 @@ def test_rows_of_different_motions_equal_single_answers() -> None:
     }
     thrown = motion_many(CUBE, CUBE, {"thrown": numbers}, fixed_pose=[4, 0.25, 0.25])
     alone = Motion.thrown([0.5, 0.5, 0.5], [8, 0, 0], [1, 2, 3])
-    assert thrown.lower[0] == first_contact(CUBE, CUBE, alone, Pose([4, 0.25, 0.25])).lower
+    assert thrown.lower[0] == colltrans.motion(CUBE, CUBE, alone, Pose([4, 0.25, 0.25])).lower
     assert isinstance(row := thrown[0], FirstContact) and row.lower == thrown.lower[0]
     listed = motion_many(CUBE, CUBE, [alone, Motion.still()], fixed_pose=[4, 0.25, 0.25])
     assert listed.lower[0] == thrown.lower[0] and listed.counts() == {"contact": 1, "free": 1}
@@ -324,8 +322,11 @@ def test_files_of_queries_ask_motions(batch: Batch, tmp_path: Path) -> None:
             assert outcome == "error" and "turn" in table["message"][i].as_py()
         elif i > 2:
             assert outcome == told[i]["outcome"]
-            lower = told[i].get("time", {}).get("lower", math.nan)
-            assert np.array_equal(table["lower"][i].as_py(), lower, equal_nan=True)
+            # Free until the end of the motion, or in the way from its start.
+            never = [1.0, math.inf] if outcome == "free" else [0.0, 0.0]
+            time = told[i].get("time")
+            known = [time["lower"], time.get("upper", math.inf)] if time else never
+            assert [table["lower"][i].as_py(), table["upper"][i].as_py()] == known
     screw = np.column_stack(
         [numbers["point"], numbers["axis"], numbers["radians"], numbers["rise"]]
     )
@@ -380,7 +381,7 @@ def test_clearances_of_motions_give_their_times() -> None:
     for found in (pressed, stuck):
         assert (found.outcome, found.time) == ("overlapping", None)
         assert found.least_tolerance is not None and abs(found.least_tolerance - 0.125) < 1e-9
-        with pytest.raises(colltrans.CertificateError):
+        with pytest.raises(colltrans.errors.CertificateError):
             found.verify()
     assert leaving.outcome == "free"
     for found in (turned, pushed, dropped, kept, solid):
@@ -421,6 +422,7 @@ def test_a_slide_goes_as_far_as_a_cast() -> None:
             assert expected == found.time
         else:
             assert abs(found.time - expected) < 1e-9, i
-        lower = found.time if found.outcome == "blocked" and found.time is not None else np.nan
-        assert np.array_equal([columns.lower[i]], [lower], equal_nan=True)
+        told = [columns.value[i], columns.lower[i], columns.upper[i]]
+        single = np.array([found.value, found.lower, found.upper], float)
+        assert np.array_equal(told, single, equal_nan=True)
         assert np.isnan(columns.least_tolerance[i]) == (found.outcome != "overlapping")

@@ -11,16 +11,16 @@ import pytest
 
 from colltrans import (
     Blocked,
-    CaseError,
+    ColltransError,
     ConvexPolyhedron,
     InputError,
     Obstacles,
     Pose,
-    QueryError,
     Solid,
     check,
     clearance,
 )
+from colltrans.errors import CaseError, QueryError
 
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 DOWN = [0, 0, -1]
@@ -139,12 +139,36 @@ def test_rows_have_the_bits_of_single_answers() -> None:
             )
             stop = obstacles.clearance(CUBE, directions[k], poses[k], ignore=ignore)
             assert casts["obstacle"][k] == (-1 if stop.obstacle is None else stop.obstacle)
-            assert ["blocked", "free", "overlapping"][casts["outcome"][k]] == stop.outcome
+            assert casts.outcome[k] == stop.outcome
             if stop.distance is not None:
                 assert casts["distance"][k] == stop.distance
+        single = obstacles.clearance(CUBE, directions[7], poses[7], ignore=ignore)
+        assert repr(casts[7]) == repr(single)
     same = obstacles.clearance_many(CUBE, DOWN, poses, before=0.5)
-    assert (same["distance"][same["outcome"] == 1] == 0.5).all()
-    assert len(Obstacles().nearest_many(CUBE, poses)["obstacle"]) == 300
+    assert (same.distance[same.where("free")] == 0.5).all()
+    none = Obstacles().nearest_many(CUBE, poses)
+    assert none.counts() == {"none": 300} and none.obstacle.tolist() == [-1] * 300
+    assert none[0] is None
+    obstacles.set_pose(0, [9, 9, 9])
+    obstacles.set_poses(range(1, 200), np.zeros((199, 3)))
+    with pytest.raises(ColltransError, match="modified since"):
+        near[0]
+
+
+def test_placed_bodies_are_inserted_and_queried() -> None:
+    obstacles = Obstacles()
+    first = obstacles.add(CUBE.at([3, 0, 0]))
+    more = obstacles.add_many([CUBE.at([6, 0, 0]), CUBE.at(Pose([9, 0, 0]))])
+    assert [obstacles.pose(k).translation[0] for k in (first, *more)] == [3, 6, 9]
+    nearest = obstacles.nearest(CUBE.at([7.75, 0, 0]))
+    assert nearest is not None and nearest.obstacle == more[1]
+    assert nearest.lower <= nearest.value <= nearest.upper and 0.24 < nearest < 0.26
+    assert obstacles.within(CUBE.at([12, 0, 0]), 2.5).closer == [more[1]]
+    free = obstacles.clearance(CUBE.at([0, 0, 0]), [-1, 0, 0])
+    stopped = obstacles.clearance(CUBE.at([0, 0, 0]), [1, 0, 0])
+    assert float(free) == math.inf and 1.9 < stopped <= 2
+    with pytest.raises(InputError, match="has a pose already"):
+        obstacles.add(CUBE.at([3, 0, 0]), [1, 0, 0])
 
 
 def test_obstacles_within_a_length_are_found() -> None:
@@ -172,8 +196,8 @@ def test_bad_input_is_refused() -> None:
         obstacles.within(CUBE, -1)
     with pytest.raises(QueryError, match="direction"):
         obstacles.clearance(CUBE, [0, 0, 0])
-    with pytest.raises(QueryError, match="row 1: the direction"):
-        obstacles.clearance_many(CUBE, [[0, 0, 1], [0, 0, 0]], np.zeros((2, 3)))
+    rows = obstacles.clearance_many(CUBE, [[0, 0, 1], [0, 0, 0]], np.zeros((2, 3)))
+    assert rows.outcome[1] == "error" and "the direction" in rows.errors[1]
     with pytest.raises(InputError):
         obstacles.clearance_many(CUBE, np.ones((3, 3)), np.zeros((2, 3)))
     with pytest.raises(InputError):

@@ -42,7 +42,7 @@ def test_a_contact_has_bodies_a_ghost_a_point_and_a_normal() -> None:
 
 def test_the_ghost_of_a_turned_body_touches() -> None:
     query = Cast(CLOUD, CUBE, [0.1, 0, -1], moving_pose=[0.3, 0.2, 6, 0.5, 0.5, 0.5, 0.5])
-    contact = query.first_contact()
+    contact = query.cast()
     assert isinstance(contact, colltrans.Contact)
     ghost = next(t for name, t in named(picture(query)).items() if name.startswith("contact"))
     assert abs(points(ghost)[:, 2].min() - 1) < 1e-9 or contact.features.fixed.kind != "face"
@@ -53,7 +53,7 @@ def test_the_ghost_of_a_turned_body_touches() -> None:
 @pytest.mark.parametrize("start", [[-4, 0.3, 0], [-3, 1, 0], [-3, 5, 0], [4, 0, 0], [0.2, 0, 0]])
 def test_every_answer_has_a_picture(start: list[float], tmp_path: Path) -> None:
     query = Cast(CUBE, CUBE, [1, 0, 0], moving_pose=start)
-    answers: list[Any] = [query, query.first_contact(), query.contact_range(), query.clearance()]
+    answers: list[Any] = [query, query.cast(), query.contact_range(), query.clearance()]
     answers += [query.directional_depth(), query.intersects()]
     for answer in answers:
         assert {"moving", "fixed"} <= set(named(picture(answer)))

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+import colltrans
 from colltrans import (
-    BuildError,
     ConvexPolyhedron,
     Motion,
     Obstacles,
@@ -17,11 +17,11 @@ from colltrans import (
     clearance,
     clearance_many,
     distance,
-    first_contact,
-    motion_clearance,
     motion_many,
     within,
 )
+from colltrans.errors import BuildError
+from colltrans.motions import motion_clearance
 
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 FAR = ConvexPolyhedron.cuboid([7, 7, 7], [8, 8, 8])
@@ -57,7 +57,7 @@ def test_scenes_take_points_either_way() -> None:
 @pytest.mark.parametrize("body", [POINT, SEGMENT])
 def test_motions_bound_the_contact_from_above(body: ConvexPolyhedron) -> None:
     turn = Motion.turn([1.5, 0, 0], [0, 0, 1], degrees=180)
-    found: Any = first_contact(body, PART, turn)
+    found: Any = colltrans.motion(body, PART, turn)
     assert found.outcome == "contact" and found.upper - found.lower < 1e-11
     report = check.check(found.proof_json())
     assert [line for line in report.holds if "meet at the time" in line]

@@ -83,7 +83,7 @@ def test_proofs_of_answers_and_their_parts_hold(tmp_path: Path, verify: Verify) 
     for body in (cube, cloud):
         for start in ([-3, 0.5, 0.25], [0.25, 0.5, 0.125], [3, 0.5, 0], [-3, 9, 0]):
             query = Cast(body, cube, [1, 0.125, 0], moving_pose=start)
-            found += [query.first_contact(), query.contact_range(), query.clearance()]
+            found += [query.cast(), query.contact_range(), query.clearance()]
             found += [query.directional_depth(), query.intersects()]
     found += [part.last.turned for part in found if isinstance(part, colltrans.ContactRange)]
     found += [part.contact for part in found if isinstance(part, colltrans.Behind)]
@@ -97,7 +97,7 @@ def test_a_proof_of_a_slide_names_the_slide(tmp_path: Path, verify: Verify) -> N
     cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     for start, tolerance in ([-3, 1, 0], 0.0), ([-3, 0.999, 0], 0.01):
         query = Cast(cube, cube, [1, 0, 0], moving_pose=start, graze_tolerance=tolerance)
-        slides, grazing = query.clearance(), query.first_contact()
+        slides, grazing = query.clearance(), query.cast()
         assert isinstance(slides, Slides) and isinstance(grazing, Grazing)
         for answer in (slides, slides.grazing, grazing, query.contact_range()):
             answer.save_proof(tmp_path / "proof.json")

@@ -2,6 +2,7 @@
 
 import copy
 import json
+import math
 import pickle
 import subprocess
 from pathlib import Path
@@ -13,19 +14,10 @@ from conftest import ROOT
 from test_schema import conform
 
 import colltrans
-from colltrans import (
-    AssemblyError,
-    ColltransError,
-    ConvexPolyhedron,
-    Failed,
-    InputError,
-    PathContact,
-    QueryError,
-    Robot,
-    Solid,
-    path_many,
-    read,
-)
+from colltrans import ColltransError, ConvexPolyhedron, InputError, Robot, Solid, read
+from colltrans.columns import Failed
+from colltrans.errors import AssemblyError, QueryError
+from colltrans.robots import PathContact, path_many
 
 DATA = ROOT / "data"
 ARM = Robot.read(DATA / "arm.urdf")
@@ -121,7 +113,7 @@ def test_paths_are_files_or_arrays_with_names_and_times() -> None:
 def test_gaps_are_kept_and_pairs_ignored() -> None:
     scene: dict[str, ConvexPolyhedron | Solid] = {"wire": WIRE}
     free = ARM.first_contact(ROWS, scene, ignore=[("wire", "tool")])
-    assert (free.outcome, free.upper, free.lower, free.pair) == ("free", None, 2, None)
+    assert (free.outcome, free.upper, free.lower, free.pair) == ("free", math.inf, 2, None)
     free.verify()
     assert ARM.first_contact(ROWS).outcome != "contact"
     near = ARM.first_contact(ROWS, scene, min_gap=0.02)
@@ -203,6 +195,8 @@ def test_many_paths_equal_single_paths() -> None:
         alone = columns[int(k)]
         assert isinstance(alone, PathContact)
         assert alone.outcome == columns.outcome[k]
+        assert [alone.lower, alone.upper] == [columns.lower[k], columns.upper[k]]
+        assert alone.value is None or alone.value == columns.value[k]
         if alone.pair is None:
             assert columns.first[k] == -1 and columns.row[k] == -1
             continue

@@ -13,13 +13,12 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
+import colltrans
 from colltrans import (
-    BuildError,
     Cast,
     ConvexPolyhedron,
     Motion,
     Obstacles,
-    QueryError,
     Robot,
     Solid,
     cast,
@@ -28,10 +27,10 @@ from colltrans import (
     clearance,
     depth,
     distance,
-    first_contact,
     free_directions,
     within,
 )
+from colltrans.errors import BuildError, QueryError
 
 CUBE = ConvexPolyhedron.cuboid([-1, -1, -1], [1, 1, 1])
 BALL = ConvexPolyhedron.sphere(0.5)
@@ -46,7 +45,7 @@ def test_casts_meet_the_round_surface() -> None:
     ]
     for start, expected in cases:
         query = Cast(BALL, CUBE, DOWN, moving_pose=start)
-        found: Any = query.first_contact()
+        found: Any = query.cast()
         assert found.translation == pytest.approx(expected, abs=1e-13)
         assert found.certificate.lower <= found.translation <= found.certificate.upper
         assert found.certificate.verify() < 1e-12
@@ -101,7 +100,7 @@ def test_many_casts_agree_with_single_ones() -> None:
 def test_motions_and_obstacles_accept_rounded_bodies() -> None:
     swing = Motion.turn([0, 0, 0], [0, 1, 0], degrees=90, pose=[0, 0, 4])
     floor = ConvexPolyhedron.cuboid([-9, -9, -1], [9, 9, 0])
-    met: Any = first_contact(BALL, floor, swing)
+    met: Any = colltrans.motion(BALL, floor, swing)
     assert met.lower <= math.acos(0.5 / 4) / (math.pi / 2) <= met.upper
     scene = Obstacles()
     names = [scene.add(BALL, [3.0 * k, 0, 0]) for k in range(1, 9)]
@@ -132,8 +131,8 @@ def _moving_answers() -> list[tuple[str, Any]]:
     beside = ConvexPolyhedron.sphere(0.1, center=[1.2, 0.4, 0.3])
     away = ConvexPolyhedron.sphere(0.1, center=[0.2, -1.2, 0.3])
     return [
-        ("motion", first_contact(BALL, floor, swing)),
-        ("motion with a gap", first_contact(BALL, floor, swing, min_gap=0.25)),
+        ("motion", colltrans.motion(BALL, floor, swing)),
+        ("motion with a gap", colltrans.motion(BALL, floor, swing, min_gap=0.25)),
         ("path", arm.first_contact(rows, {"ball": beside})),
         ("path with a gap", arm.first_contact(rows, {"ball": beside}, min_gap=0.125)),
         ("free path", arm.first_contact(rows, {"ball": away})),
@@ -261,7 +260,7 @@ def test_motions_of_rounded_solids_are_checked() -> None:
             ConvexPolyhedron.cuboid([-9, -9, -1], [-8, 9, 3]),
         ]
     )
-    met: Any = first_contact(BALL, floor.rounded(0.125), swing, tolerance=0)
+    met: Any = colltrans.motion(BALL, floor.rounded(0.125), swing, tolerance=0)
     expected = math.acos(0.625 / 4) / (math.pi / 2)
     assert met.lower - 1e-11 <= expected <= met.upper + 1e-11 and met.upper - met.lower < 1e-9
     file = json.loads(met.proof_json())

@@ -169,7 +169,7 @@ def test_every_class_of_answers_has_a_record() -> None:
     cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     for start in ([-3, 0.5, 0], [-3, 1, 0], [-3, 9, 0], [0.5, 0, 0], [3, 0, 0]):
         query = Cast(cube, cube, [1, 0, 0], moving_pose=start)
-        found: list[Any] = [query.first_contact(), query.contact_range(), query.clearance()]
+        found: list[Any] = [query.cast(), query.contact_range(), query.clearance()]
         depth, meeting = query.directional_depth(), query.intersects()
         assert depth.to_dict() == depth.clearance.to_dict()
         told = meeting.to_dict()

@@ -10,20 +10,16 @@ import pytest
 from conftest import ROOT, Batch
 
 from colltrans import (
-    BuildError,
-    CertificateError,
     ConvexPolyhedron,
     InputError,
-    MeshError,
-    QueryError,
-    ShrinkReport,
     Solid,
     SolidBlocked,
     SolidCast,
-    SolidCertificate,
     SolidFree,
     SolidOverlapping,
 )
+from colltrans.answers import ShrinkReport, SolidCertificate
+from colltrans.errors import BuildError, CertificateError, MeshError, QueryError
 
 PARTS = ROOT / "data"
 CORNERS = np.vstack([np.zeros(3), np.eye(3)])
@@ -185,11 +181,11 @@ def test_meshes_in_every_form_are_read_and_invalid_ones_refused(tmp_path: Path) 
     for faces in (FACES, FACES.tolist(), FACES.astype(np.uint8)):
         assert Solid(CORNERS.astype("f4"), faces).volume == 1 / 6
     mesh = SimpleNamespace(vertices=CORNERS, faces=FACES)
-    assert Solid.from_trimesh(mesh).bounds.tolist() == [[0, 0, 0], [1, 1, 1]]
-    assert ConvexPolyhedron.from_trimesh(mesh).volume == 1 / 6
-    for body in (Solid, ConvexPolyhedron):
-        with pytest.raises(InputError, match="mesh: it has no faces"):
-            body.from_trimesh(SimpleNamespace(vertices=CORNERS))
+    assert Solid(mesh).bounds.tolist() == [[0, 0, 0], [1, 1, 1]]
+    assert ConvexPolyhedron.from_mesh(mesh).volume == 1 / 6
+    for build in (Solid, ConvexPolyhedron.from_mesh):
+        with pytest.raises(InputError, match="faces: they are missing"):
+            build(CORNERS)
     with pytest.raises(BuildError, match="not closed"):
         Solid(CORNERS, FACES[:3])
     assert not Solid(CORNERS, FACES[:3], open=True).is_closed

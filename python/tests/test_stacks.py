@@ -13,15 +13,15 @@ from colltrans import (
     cast,
     cast_many,
     clearance_many,
-    concatenate,
     contact_range_many,
     depth_many,
     distance_many,
     free_directions,
-    free_directions_many,
     motion_many,
     within_many,
 )
+from colltrans.columns import concatenate
+from colltrans.removal import free_directions_many
 
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 PLATE = ConvexPolyhedron.cuboid([-2, -2, -1], [2, 2, 0])
@@ -110,7 +110,7 @@ def test_features_equal_those_of_the_row(ask: Any) -> None:
     index = {"moving_index": drawn.moving, "fixed_index": drawn.fixed}
     columns = ask(drawn.bodies(), drawn.bodies(), drawn.direction, features=True, **poses, **index)
     seen = 0
-    for i, answer in enumerate(columns):
+    for i, answer in enumerate(columns.answers()):
         features = getattr(_contact(answer), "features", None)
         for side in ("moving", "fixed"):
             row = getattr(columns, f"{side}_feature")[i].tolist()
@@ -134,7 +134,7 @@ def test_features_of_solids_distances_and_motions() -> None:
     assert columns.moving_feature[2].tolist() == [-1, -1, -1]
     near = distance_many(CUBE, PLATE, moving_pose=starts, features=True)
     assert near.moving_feature is not None
-    for i, answer in enumerate(near):
+    for i, answer in enumerate(near.answers()):
         assert near.moving_feature[i].tolist() == _told(answer.features.moving)  # type: ignore[union-attr]
     fall = {"slide": {"by": [0, 0, -20.0]}}
     moved = motion_many(CUBE, PLATE, fall, moving_pose=starts, features=True)

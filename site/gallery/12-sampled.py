@@ -6,7 +6,7 @@ import sys
 import matplotlib.pyplot as plt
 import numpy as np
 
-from colltrans import ConvexPolyhedron, Motion, distance_many, first_contact
+from colltrans import ConvexPolyhedron, Motion, distance_many, motion
 
 blade = ConvexPolyhedron.cuboid([0, -0.01, -0.2], [2, 0.01, 0.2])
 post = ConvexPolyhedron.cuboid([-0.02, 1.5, -1], [0.02, 1.54, 1])
@@ -18,7 +18,7 @@ def apart(times):
     return distance_many(blade, post, moving_pose=poses).upper
 
 
-contact = first_contact(blade, post, swing)
+contact = motion(blade, post, swing)
 fine, few = np.linspace(0, 1, 2000), np.linspace(0, 1, 10)
 figure, axes = plt.subplots(figsize=(6, 3.4))
 axes.plot(fine, apart(fine), color="#6f97d6", label="distance")

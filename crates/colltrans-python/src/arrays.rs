@@ -53,13 +53,6 @@ pub(crate) fn numbers(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Numbers> {
         .ok_or_else(|| wrong_shape_error(&array, name, "a row or a table of numbers"))
 }
 
-/// Returns the attributes `vertices` and `faces` of a mesh object, as trimesh names them.
-pub(crate) fn mesh<'py>(of: &Bound<'py, PyAny>) -> PyResult<[Bound<'py, PyAny>; 2]> {
-    let part =
-        |name| of.getattr(name).map_err(|_| input_error("mesh", format_args!("it has no {name}")));
-    Ok([part("vertices")?, part("faces")?])
-}
-
 /// Reads a tuple or list of numbers, or an aligned array in double precision; `None` for anything else.
 #[inline]
 pub(crate) fn plain_numbers(of: &Bound<'_, PyAny>) -> Option<Numbers> {

@@ -8,11 +8,13 @@ use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
-use crate::arguments::refuse_mesh;
-use crate::arrays::{self, Indices, Vector, faces, ids, points, read_only, row, table, vector};
-use crate::errors::{OrRaise, error};
+use crate::arguments::{mesh_parts, refuse_file};
+use crate::arrays::{Indices, Vector, faces, ids, points, read_only, row, table, vector};
+use crate::errors::{OrRaise, error, input_error};
 use crate::frozen::{Options, Shown, getters, html, show};
 use crate::offset::OffsetReport;
+use crate::placed::Placed;
+use crate::solid::Piece;
 
 /// A convex polyhedron in its own frame: the convex hull of points, or this hull swept by a ball
 /// (:meth:`rounded`).
@@ -22,8 +24,9 @@ use crate::offset::OffsetReport;
 ///
 /// Parameters
 /// ----------
-/// points : array_like of shape (N, 3)
-///     Coordinates in the body frame, in any unit of length. Interior points are dropped.
+/// points : array_like of shape (N, 3), or mesh
+///     Coordinates in the body frame, in any unit of length. Interior points are dropped. A mesh must be convex; see
+///     :meth:`from_mesh`. ``ConvexPolyhedron(mesh.vertices)`` is the hull of any mesh.
 ///
 /// Raises
 /// ------
@@ -78,6 +81,22 @@ getters!(ConvexPolyhedron, |it| {
         let face = |f| it.0.face_vertices(f).collect::<Vec<_>>().into_pyarray(py);
         (0..it.0.face_count() as u32).map(face).collect()
     };
+    /// ndarray of shape (M, 3): The faces as triangles, as indices into ``vertices``, without the radius of a
+    /// rounded body.
+    triangles(py): PyResult<Bound<'py, PyArray2<u32>>> = {
+        let fan = |f| {
+            let corners: Vec<u32> = it.0.face_vertices(f).collect();
+            (2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]).collect::<Vec<_>>()
+        };
+        table(py, (0..it.0.face_count() as u32).flat_map(fan)).map(read_only)
+    };
+    /// ndarray of shape (2, 3): Smallest and largest coordinates of the body, with its radius if it is rounded.
+    bounds(py): PyResult<Bound<'py, PyArray2<f64>>> = {
+        let (vertices, radius) = (it.0.vertices(), it.0.radius());
+        let low = vertices.iter().copied().reduce(DVec3::min).unwrap_or_default() - radius;
+        let high = vertices.iter().copied().reduce(DVec3::max).unwrap_or_default() + radius;
+        table(py, [low, high].map(|v| v.to_array())).map(read_only)
+    };
     /// int: The dimension of the hull of the vertices, without the radius: 3 for a body with a volume, 2 for a
     /// flat polygon, 1 for a segment, 0 for a point.
     dimension: u8 = it.0.dimension();
@@ -99,9 +118,10 @@ getters!(ConvexPolyhedron, |it| {
 impl ConvexPolyhedron {
     #[new]
     fn new(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let call = "ConvexPolyhedron.from_trimesh(mesh), or ConvexPolyhedron(mesh.vertices) for the \
-                    hull of all its vertices";
-        refuse_mesh(points, "points", "ConvexPolyhedron", call)?;
+        refuse_file(points, "points", "ConvexPolyhedron")?;
+        if mesh_parts(points)?.is_some() {
+            return Self::from_mesh(py, points, None, 0.0);
+        }
         let points = self::points(points, "points")?;
         py.detach(|| colltrans::ConvexPolyhedron::from_points(&points)).or_raise().map(Self::from)
     }
@@ -110,10 +130,11 @@ impl ConvexPolyhedron {
     ///
     /// Parameters
     /// ----------
-    /// vertices : array_like of shape (N, 3)
-    ///     Coordinates in the body frame. Vertices that no face uses are ignored.
+    /// vertices : array_like of shape (N, 3), or mesh
+    ///     Coordinates in the body frame. Vertices that no face uses are ignored. A mesh is an object with ``vertices``
+    ///     and ``faces`` or ``triangles``, such as those of trimesh and open3d.
     /// faces : array_like of shape (M, k), or a sequence of sequences
-    ///     Vertex indices, counter-clockwise as seen from outside.
+    ///     Vertex indices, counter-clockwise as seen from outside. They are not given for a mesh.
     /// convex_tolerance : float
     ///     The maximum depth of the surface below its convex hull, a length. Rounding errors are tolerated in
     ///     any case. The result is the hull.
@@ -132,7 +153,8 @@ impl ConvexPolyhedron {
     ///
     /// Examples
     /// --------
-    /// >>> from colltrans import BuildError, ConvexPolyhedron
+    /// >>> from colltrans import ConvexPolyhedron
+    /// >>> from colltrans.errors import BuildError
     /// >>> vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     /// >>> ConvexPolyhedron.from_mesh(vertices, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
     /// ConvexPolyhedron(4 vertices, 6 edges, 4 faces)
@@ -142,39 +164,54 @@ impl ConvexPolyhedron {
     /// ...     print(error)
     /// the surface is open: the edge from vertex 0 to vertex 2 of face 0 has no face on its other side
     #[staticmethod]
-    #[pyo3(signature = (vertices, faces, convex_tolerance=0.0))]
+    #[pyo3(signature = (vertices, faces=None, convex_tolerance=0.0))]
     fn from_mesh(
         py: Python<'_>,
         vertices: &Bound<'_, PyAny>,
-        faces: &Bound<'_, PyAny>,
+        faces: Option<&Bound<'_, PyAny>>,
         convex_tolerance: f64,
     ) -> PyResult<Self> {
+        if let (None, Some([vertices, faces])) = (faces, mesh_parts(vertices)?) {
+            return Self::from_mesh(py, &vertices, Some(&faces), convex_tolerance);
+        }
+        let Some(faces) = faces else {
+            let what = "they are missing; ConvexPolyhedron(points) makes the hull of points alone";
+            return Err(input_error("faces", what));
+        };
         let (vertices, faces) = (points(vertices, "vertices")?, self::faces(faces)?);
         py.detach(|| colltrans::ConvexPolyhedron::from_mesh(&vertices, &faces, convex_tolerance))
             .or_raise()
             .map(Self::from)
     }
 
-    /// Builds a body from a closed convex surface with ``vertices`` and ``faces``, such as a trimesh mesh.
+    /// Reads a convex body from a mesh file; see :func:`colltrans.read`.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, hull=false, scale=1.0, convex_tolerance=None, merge_tolerance=None))]
+    fn read(
+        py: Python<'_>,
+        path: PathBuf,
+        hull: bool,
+        scale: f64,
+        convex_tolerance: Option<f64>,
+        merge_tolerance: Option<f64>,
+    ) -> PyResult<Self> {
+        read(py, path, hull, scale, convex_tolerance, merge_tolerance)
+    }
+
+    /// Places the body in the world.
     ///
     /// Parameters
     /// ----------
-    /// mesh : object
-    /// convex_tolerance : float
-    ///     See :meth:`from_mesh`.
+    /// pose : array_like or Pose, optional
+    ///     See :class:`Pose`.
     ///
     /// Returns
     /// -------
-    /// ConvexPolyhedron
-    #[staticmethod]
-    #[pyo3(signature = (mesh, convex_tolerance=0.0))]
-    fn from_trimesh(
-        py: Python<'_>,
-        mesh: &Bound<'_, PyAny>,
-        convex_tolerance: f64,
-    ) -> PyResult<Self> {
-        let [vertices, faces] = arrays::mesh(mesh)?;
-        Self::from_mesh(py, &vertices, &faces, convex_tolerance)
+    /// Placed
+    #[pyo3(signature = (pose=None))]
+    fn at(slf: &Bound<'_, Self>, pose: Option<&Bound<'_, PyAny>>) -> PyResult<Placed> {
+        let pose = crate::pose::pose(pose, "pose")?;
+        Ok(Placed { body: Piece::Convex(slf.clone().unbind()), pose })
     }
 
     /// Builds the axis-aligned box between two corners.
@@ -378,7 +415,8 @@ impl ConvexPolyhedron {
     ///
     /// Examples
     /// --------
-    /// >>> from colltrans import BuildError, ConvexPolyhedron
+    /// >>> from colltrans import ConvexPolyhedron
+    /// >>> from colltrans.errors import BuildError
     /// >>> plate = ConvexPolyhedron.cuboid([0, 0, 0], [4, 4, 1])
     /// >>> smaller, report = plate.shrunk(0.25)
     /// >>> smaller.volume, round(report.farthest, 9), len(report.vanished)

@@ -19,7 +19,6 @@ use pyo3::types::PyDict;
 
 use crate::arrays::table;
 use crate::columns::{Corners, FEATURES, Places, Row};
-use crate::errors::error;
 
 /// Number of rows between two reads of the clock.
 const LOOK: usize = 16;
@@ -156,13 +155,13 @@ fn answer_or_bug<T>(answer: impl FnOnce() -> Result<T, String>) -> Result<T, Str
         .unwrap_or_else(|_| Err("internal error; please report it".into()))
 }
 
-/// Answers rows that do not become columns, on `threads` threads. Raises the error of the first bad row.
+/// Answers rows on `threads` threads, each with its answer or the reason for its absence.
 pub(crate) fn each<T: Send>(
     rows: usize,
     chunk: usize,
     threads: Option<usize>,
     ask: impl Fn(usize) -> Result<T, String> + Sync,
-) -> PyResult<Vec<T>> {
+) -> PyResult<Vec<Result<T, String>>> {
     let mut answers: Vec<_> = std::iter::repeat_with(|| None).take(rows).collect();
     let parts = answers.chunks_mut(chunk).enumerate().collect();
     run_on_threads(parts, threads, |(k, part), stop| {
@@ -173,10 +172,7 @@ pub(crate) fn each<T: Send>(
             *answer = Some(answer_or_bug(|| ask(row)));
         }
     })?;
-    let answer = |(row, answer): (usize, Result<T, String>)| {
-        answer.map_err(|what| error("QueryError", format_args!("row {row}: {what}")))
-    };
-    answers.into_iter().flatten().enumerate().map(answer).collect()
+    Ok(answers.into_iter().flatten().collect())
 }
 
 /// Returns the requested number of threads, or the number of processors.

@@ -36,7 +36,7 @@ macro_rules! of_a_query {
 ///
 /// A supporting plane proves the lower bound, three weighted pairs of vertices prove the upper one. For rounded
 /// bodies these are the vertices of the hulls without radius, and the check adds the radii.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.answers")]
 pub(crate) struct Certificate {
     pub(crate) proof: colltrans::Certificate,
     pub(crate) query: Py<Cast>,
@@ -95,7 +95,7 @@ impl Certificate {
 }
 
 /// The proof that two bodies never meet along a direction: a plane parallel to it between them.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.answers")]
 pub(crate) struct Separation {
     pub(crate) proof: colltrans::Separation,
     pub(crate) query: Py<Cast>,
@@ -141,7 +141,7 @@ impl Separation {
 }
 
 /// The proof of a clearance between solids.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.answers")]
 #[derive(Serialize, Deserialize)]
 pub(crate) struct SolidCertificate(pub(crate) colltrans::solid::SolidCertificate);
 

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use crate::answer::{Answer, answer, object};
 use crate::arrays::{Vector, coordinates, row};
 use crate::frozen::getters;
+use crate::number::number;
 use crate::outcome::{Contact, Grazing, LastContact, contact_text, grazing_text};
 use crate::query::Cast;
 
@@ -27,9 +28,17 @@ getters!(Blocked, |it| {
     /// float: The free travel in multiples of the direction: the lower bound of the contact, or 0 if that is
     /// negative.
     distance: f64 = it.distance;
+    /// float: The :attr:`distance`, which is proven: the bodies do not overlap up to it.
+    lower: f64 = it.distance;
+    /// float: A proven upper bound of the translation at which the body is stopped.
+    upper: f64 = it.contact.certificate.upper.max(0.0);
     /// Contact: The contact that stops the body.
     contact(py): Contact = Contact { contact: it.contact, query: it.query(py) };
 });
+
+number!(Blocked, f64, |it| it.distance,
+    /// float: The free travel, :attr:`distance`.
+);
 
 #[pymethods]
 impl Blocked {
@@ -50,9 +59,17 @@ answer!(Slides("grazing") of Clearance, Cast, |it| Clearance::Free(FreeReason::S
 getters!(Slides, |it| {
     /// float: Infinite.
     distance: f64 = f64::INFINITY;
+    /// float: Infinite.
+    lower: f64 = f64::INFINITY;
+    /// float: Infinite.
+    upper: f64 = f64::INFINITY;
     /// Grazing: The grazing contact along which the body slides.
     grazing(py): Grazing = Grazing { grazing: it.grazing, query: it.query(py) };
 });
+
+number!(Slides, f64, |_| f64::INFINITY,
+    /// float: Infinite, because nothing blocks.
+);
 
 #[pymethods]
 impl Slides {
@@ -73,9 +90,17 @@ answer!(Behind("contact") of Clearance, Cast, |it| Clearance::Free(FreeReason::B
 getters!(Behind, |it| {
     /// float: Infinite.
     distance: f64 = f64::INFINITY;
+    /// float: Infinite.
+    lower: f64 = f64::INFINITY;
+    /// float: Infinite.
+    upper: f64 = f64::INFINITY;
     /// Contact: The last contact, which is the first contact of the reversed query.
     contact(py): PyResult<Contact> = last(py, it.contact, &it.query);
 });
+
+number!(Behind, f64, |_| f64::INFINITY,
+    /// float: Infinite, because nothing blocks.
+);
 
 #[pymethods]
 impl Behind {
@@ -96,11 +121,19 @@ answer!(Overlapping("first", "last") of Clearance, Cast, |it| Clearance::Overlap
 getters!(Overlapping, |it| {
     /// None: An overlap has no clearance.
     distance: Option<f64> = None;
+    /// None: An overlap has no clearance.
+    lower: Option<f64> = None;
+    /// None: An overlap has no clearance.
+    upper: Option<f64> = None;
     /// Contact: The first contact, behind.
     first(py): Contact = Contact { contact: it.ends.first, query: it.query(py) };
     /// LastContact: The last contact, ahead.
     last(py): PyResult<LastContact> = LastContact::from_outcome(py, Outcome::Contact(it.ends.last), &it.query);
 });
+
+number!(Overlapping, Option<f64>, |_| None,
+    /// None: An overlap has no free travel. ``float`` raises a TypeError.
+);
 
 #[pymethods]
 impl Overlapping {
@@ -111,7 +144,7 @@ impl Overlapping {
 }
 
 /// The travel backwards along the direction until an overlap ends.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.answers")]
 pub(crate) struct DirectionalDepth {
     depth: colltrans::DirectionalDepth,
     query: Py<Cast>,
@@ -123,9 +156,20 @@ getters!(DirectionalDepth, |it| {
     /// float: The depth in multiples of the direction, never less than the true depth. It is 0 without an overlap,
     /// and for an overlap within rounding errors or the graze tolerance.
     depth: f64 = it.depth.depth;
+    /// float: A proven lower bound of the depth.
+    lower: f64 = match it.depth.clearance {
+        Clearance::Overlapping(ends) => (-ends.first.certificate.upper).max(0.0),
+        _ => 0.0,
+    };
+    /// float: The :attr:`depth`, which is proven: the overlap has ended after it.
+    upper: f64 = it.depth.depth;
     /// Blocked or Slides or Behind or Separated or Overlapping: The clearance that determines the depth.
     clearance(py): PyResult<Bound<'py, PyAny>> = it.depth.clearance.object(it.query.bind(py));
 });
+
+number!(DirectionalDepth, f64, |it| it.depth.depth,
+    /// float: The :attr:`depth`.
+);
 
 #[pymethods]
 impl DirectionalDepth {
@@ -189,7 +233,8 @@ impl Answer for Clearance {
             Self::Free(FreeReason::Slides(grazing)) => object(py, Slides { grazing, query }),
             Self::Free(FreeReason::Behind(contact)) => object(py, Behind { contact, query }),
             Self::Free(FreeReason::Separated(of)) => {
-                colltrans::Outcome::Separated(of).object(asked)
+                let outcome: Outcome = Outcome::Separated(of);
+                outcome.object(asked)
             }
             Self::Overlapping(ends) => object(py, Overlapping { ends, query }),
         }

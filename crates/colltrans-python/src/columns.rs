@@ -121,6 +121,7 @@ pub(crate) enum Question {
     Distance,
     Depth,
     Within,
+    Intersects,
     Motion,
     MotionClearance,
 }
@@ -134,6 +135,7 @@ impl Question {
             "distance" => Ok(Self::Distance),
             "depth" => Ok(Self::Depth),
             "within" => Ok(Self::Within),
+            "intersects" => Ok(Self::Intersects),
             "motion" => Ok(Self::Motion),
             "motion_clearance" => Ok(Self::MotionClearance),
             _ => Err(PyValueError::new_err(format!("no question {name:?}"))),
@@ -149,6 +151,7 @@ impl Question {
             }
             Self::Distance => &["apart", "meeting", "error"],
             Self::Depth => &["overlapping", "touching", "apart", "error"],
+            Self::Intersects => &["meeting", "apart", "error"],
             Self::Within => &["closer", "farther", "undecided", "error"],
             Self::Motion => &["contact", "grazing", "free", "overlapping", "undecided", "error"],
             Self::MotionClearance => &["blocked", "free", "overlapping", "error"],
@@ -246,8 +249,16 @@ impl Row<'_> {
 
     /// Writes the record of a motion.
     pub(crate) fn set_motion(&mut self, question: Question, of: &MotionRecord) {
+        // The bounds are those of single answers.
+        let [lower, upper] = match (of.time, of.outcome, question) {
+            (Some(time), ..) => [time.lower, time.upper.unwrap_or(f64::INFINITY)],
+            (None, Ending::Free, Question::MotionClearance) => [1.0; 2],
+            (None, Ending::Free, _) => [1.0, f64::INFINITY],
+            (None, Ending::Overlapping, Question::Motion) => [0.0; 2],
+            (None, ..) => [f64::NAN; 2],
+        };
         self.set_ending(question, of.outcome)
-            .set_bounds(of.time.map(|time| time.lower), of.time.and_then(|time| time.upper))
+            .set_bounds(Some(lower), Some(upper))
             .set_overlaps(&of.start_overlaps)
             .set_optional_vector(NORMAL, of.normal)
             .set_optional_vector(POINT, of.point)

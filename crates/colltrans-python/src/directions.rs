@@ -16,12 +16,12 @@ use crate::answer::save;
 use crate::arrays::points;
 use crate::errors::{OrRaise, input_error};
 use crate::frozen::{getters, plain};
-use crate::pose::{Pose, pose};
+use crate::pose::Pose;
 use crate::solid::Piece;
 use crate::solid_cast::{placed_bodies, run_patiently};
 
 /// All directions along which one body can leave another, with proofs; see :func:`free_directions`.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.removal")]
 pub(crate) struct FreeDirections {
     bodies: [Piece; 2],
     poses: [colltrans::Pose; 2],
@@ -276,7 +276,8 @@ impl FreeDirections {
 ///
 /// Examples
 /// --------
-/// >>> from colltrans import ConvexPolyhedron, free_directions
+/// >>> from colltrans import ConvexPolyhedron
+/// >>> from colltrans.removal import free_directions
 /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 /// >>> lid = free_directions(cube, cube, moving_pose=[0, 0, 1])
 /// >>> low, high = lid.free_share
@@ -306,8 +307,9 @@ pub(crate) fn free_directions(
             format_args!("{depth} is out of range; accepted: at most 50"),
         ));
     }
-    let bodies = [Piece::from_python(moving, "moving")?, Piece::from_python(fixed, "fixed")?];
-    let poses = [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?];
+    let (moving, moving_pose) = Piece::placed(moving, moving_pose, "moving")?;
+    let (fixed, fixed_pose) = Piece::placed(fixed, fixed_pose, "fixed")?;
+    let (bodies, poses) = ([moving, fixed], [moving_pose, fixed_pose]);
     let start = if ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
     let options = FreeOptions::DEFAULT
         .with_tolerance(tolerance)

@@ -1,9 +1,11 @@
 //! Answers about two bodies at fixed poses: distance, depth, comparison of the distance with a length.
 
+use std::sync::OnceLock;
+
 use colltrans::glam::DVec3;
 use colltrans::record::{DistanceRecord, PairAnswer, PairQuestion, Record};
-use colltrans::solid::SolidPair as _;
 use colltrans::solid::SolidSteps;
+use colltrans::solid::{SolidPair as _, SolidPenetration as _};
 use colltrans::{ProofFile, Solid};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -13,6 +15,7 @@ use crate::arrays::{Vector, coordinates, row};
 use crate::errors::{OrRaise, error, other_bodies_error};
 use crate::features::{Feature, Features, Steps};
 use crate::frozen::getters;
+use crate::number::{middle, number};
 use crate::pair::{Of, Pair};
 
 type DistanceOf = Of<colltrans::Distance, colltrans::Distance<Solid>>;
@@ -73,6 +76,10 @@ getters!(Distance, |it| {
     };
 });
 
+number!(Distance, f64, |it| either!(it.found, found => middle(found.lower, found.upper)),
+    /// float: The middle of both bounds.
+);
+
 #[pymethods]
 impl Distance {
     /// Checks the proof with the bodies alone. Between solids the query runs again to build the proof.
@@ -115,6 +122,10 @@ getters!(Depth, |it| {
     steps: Steps = Steps(it.depth.steps);
 });
 
+number!(Depth, f64, |it| middle(it.depth.lower, it.depth.upper),
+    /// float: The middle of both bounds.
+);
+
 #[pymethods]
 impl Depth {
     /// Checks the proof with the bodies alone.
@@ -142,6 +153,21 @@ impl Depth {
 pub(crate) struct OverlapDepth {
     depth: colltrans::solid::OverlapDepth,
     query: Py<Pair>,
+    /// Bounds of the shortest translation that separates the solids, computed on first access.
+    bounds: OnceLock<[f64; 2]>,
+}
+
+impl OverlapDepth {
+    /// Returns bounds of the shortest translation that separates the solids.
+    fn bounds(&self) -> PyResult<[f64; 2]> {
+        if let Some(bounds) = self.bounds.get() {
+            return Ok(*bounds);
+        }
+        let query = self.query.get();
+        let Of::Solids(pair) = query.asked()? else { return Err(other_bodies_error()) };
+        let found = Python::attach(|py| py.detach(|| pair.depth())).or_raise()?;
+        Ok(*self.bounds.get_or_init(|| found.bounds()))
+    }
 }
 
 answer!(OverlapDepth("meets", "least_tolerance") of PairAnswer, Pair, |it| PairAnswer::OverlapDepth(it.depth));
@@ -153,7 +179,16 @@ getters!(OverlapDepth, |it| {
     /// do not overlap. It is None if a solid vanishes before the overlap ends, or if overlapping solids have open
     /// shells.
     least_tolerance: Option<f64> = it.depth.least_tolerance;
+    /// float: A lower bound of the length of the shortest translation that separates the solids; 0 if they do not
+    /// overlap. Both bounds are computed on first access.
+    lower: PyResult<f64> = Ok(it.bounds()?[0]);
+    /// float: An upper bound of this length.
+    upper: PyResult<f64> = Ok(it.bounds()?[1]);
 });
+
+number!(OverlapDepth, f64, |it| middle(it.bounds()?[0], it.bounds()?[1]),
+    /// float: The middle of both bounds.
+);
 
 #[pymethods]
 impl OverlapDepth {
@@ -166,6 +201,10 @@ impl OverlapDepth {
 }
 
 /// Whether two bodies are closer than a length, with a bound of their distance that proves it.
+///
+/// There are three outcomes, in ``closer``: True, False, and None if the length lies between the bounds of the distance,
+/// which differ by a few rounding errors. ``bool`` is False only if the distance is proven to exceed the length, so that
+/// the undecided case counts as closer.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Within {
     found: WithinOf,
@@ -220,6 +259,10 @@ impl Within {
     ///     The proof does not hold; the message names the failed condition.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         within_proof(&self.found, self.query.bind(py))?.check().map(drop).or_raise()
+    }
+
+    fn __bool__(&self) -> bool {
+        self.closer().unwrap_or(true)
     }
 
     fn __repr__(&self) -> String {
@@ -308,7 +351,9 @@ impl Answer for PairAnswer {
         let (py, asked) = (query.py(), query.clone().unbind());
         match self {
             Self::Depth(depth) => object(py, Depth { depth, query: asked }),
-            Self::OverlapDepth(depth) => object(py, OverlapDepth { depth, query: asked }),
+            Self::OverlapDepth(depth) => {
+                object(py, OverlapDepth { depth, query: asked, bounds: OnceLock::new() })
+            }
             Self::Distance(found) => DistanceOf::Convex(found).object(query),
             Self::Within { .. } => Err(other_bodies_error()),
         }

@@ -11,7 +11,7 @@ use crate::arrays::Indices;
 use crate::frozen::{getters, match_args, pickled};
 
 /// Step counts of the search for one answer.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.answers")]
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Steps(pub(crate) colltrans::Steps);
 
@@ -46,7 +46,7 @@ impl Steps {
 }
 
 /// A vertex, an edge or a face of a body.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.answers")]
 #[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Feature {
     kind: Cow<'static, str>,
@@ -81,7 +81,7 @@ impl Feature {
 }
 
 /// The features of both bodies that are in contact.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.answers")]
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Features {
     pub(crate) moving: Feature,

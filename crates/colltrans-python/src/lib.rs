@@ -31,10 +31,12 @@ mod features;
 mod frozen;
 mod many;
 mod motion;
+mod number;
 mod obstacles;
 mod offset;
 mod outcome;
 mod pair;
+mod placed;
 mod pool;
 mod pose;
 mod query;
@@ -82,6 +84,8 @@ mod _colltrans {
     use crate::outcome::{Contact, ContactRange, Grazing, LastContact, Separated};
     #[pymodule_export]
     use crate::pair::Pair;
+    #[pymodule_export]
+    use crate::placed::Placed;
     #[pymodule_export]
     use crate::pose::Pose;
     #[pymodule_export]

@@ -8,6 +8,7 @@ use std::collections::HashMap;
 use colltrans::glam::DVec3;
 use colltrans::motion::Motion;
 use colltrans::record::{Fields, MotionRecord, PairQuestion, Record};
+use colltrans::solid::SolidPenetration as _;
 use colltrans::{Cast, Options, Pair, Placed, Pose, Solver};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -114,6 +115,11 @@ impl<'a> Work<'a> {
             return Ok(());
         }
         let poses = [self.poses[0].get(row)?, self.poses[1].get(row)?];
+        if matches!(self.question, Question::Intersects) {
+            let meets = do_intersect([moving, fixed], poses)?;
+            to.set_outcome(u8::from(!meets));
+            return Ok(());
+        }
         let RowQuery::Direction { directions, graze_tolerances, min_gaps, options } = &self.with
         else {
             let record = self.answer_placed([moving, fixed], poses, row)?;
@@ -151,11 +157,30 @@ impl<'a> Work<'a> {
             let placed = |k: usize| -> Result<Placed<'_, _>, String> {
                 Ok(Placed { body: bodies[k].solid()?, pose: poses[k] })
             };
-            Pair::new(placed(0)?, placed(1)?)
-                .and_then(|pair| question.answer_solids(&pair)?.record(&pair))
+            Pair::new(placed(0)?, placed(1)?).and_then(|pair| {
+                let mut record = question.answer_solids(&pair)?.record(&pair)?;
+                if let Record::Depth(of) = &mut record {
+                    let depth = pair.depth()?;
+                    (of.lower, of.upper) = (Some(depth.lower), Some(depth.upper));
+                }
+                Ok(record)
+            })
         };
         record.map_err(|what| what.to_string())
     }
+}
+
+/// Checks whether two bodies meet. The answer does not depend on the direction of the cast.
+fn do_intersect(bodies: [AnyBody<'_>; 2], poses: [Pose; 2]) -> Result<bool, String> {
+    let meets = if let [AnyBody::Convex(p), AnyBody::Convex(q)] = bodies {
+        Cast::new(p.at(poses[0]), q.at(poses[1]), DVec3::X)
+            .and_then(|cast| Ok(cast.intersects()?.meets))
+    } else {
+        let solids = [bodies[0].solid()?, bodies[1].solid()?];
+        Cast::new(solids[0].at(poses[0]), solids[1].at(poses[1]), DVec3::X)
+            .and_then(|cast| Ok(cast.intersects()?.meets))
+    };
+    meets.map_err(|what| what.to_string())
 }
 
 /// Computes the first contact of two moving bodies, or the clearance of their motion.
@@ -243,7 +268,7 @@ pub(crate) fn ask_many<'py>(
             options: options_of(Some(solver))?,
         },
         Question::Within => RowQuery::Length(table("length")?),
-        Question::Distance | Question::Depth => RowQuery::Nothing,
+        Question::Distance | Question::Depth | Question::Intersects => RowQuery::Nothing,
         Question::Motion | Question::MotionClearance => RowQuery::Motion {
             motions: [
                 read_motions("moving_motion", &tables, n)?,

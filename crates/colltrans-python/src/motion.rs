@@ -16,7 +16,9 @@ use crate::body;
 use crate::errors::{OrRaise, error, input_error, other_bodies_error, query_error};
 use crate::features::{Feature, Features};
 use crate::frozen::{Options, Shown, getters, html, pickled, show};
+use crate::number::{middle, number};
 use crate::pair::Of;
+use crate::placed::Placed;
 use crate::pose::{Bare, Pose, bare_numbers, pose, pose_from_bare};
 use crate::solid::Piece;
 use crate::solid_cast::run_patiently;
@@ -277,7 +279,7 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
         return Ok(motion::Motion::at_rest(pose(of, name)?));
     }
     let bare = bare_numbers(given, name)?;
-    if let Bare::Numbers(Numbers { values: [x, y, z, ..], shape: Shape::Row(3) }) = bare {
+    if let Bare(Numbers { values: [x, y, z, ..], shape: Shape::Row(3) }) = bare {
         let vector = [x, y, z].map(|c| c + 0.0);
         return Err(input_error(
             name,
@@ -288,6 +290,28 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
         ));
     }
     Ok(motion::Motion::at_rest(pose_from_bare(given.py(), &bare, name)?))
+}
+
+/// Reads a body and its motion. A placed body without a motion rests in its pose.
+fn moving_body(
+    body: &Bound<'_, PyAny>,
+    motion: Option<&Bound<'_, PyAny>>,
+    name: &str,
+) -> PyResult<(Piece, motion::Motion)> {
+    let argument = format!("{name}_motion");
+    match (body.cast::<Placed>(), motion) {
+        (Ok(_), Some(_)) => Err(input_error(
+            &argument,
+            format_args!(
+                "{name} has a pose already, from body.at(pose); give the pose to the motion alone"
+            ),
+        )),
+        (Ok(placed), None) => {
+            let Placed { body, pose } = placed.get();
+            Ok((body.copy(placed.py()), motion::Motion::at_rest(*pose)))
+        }
+        (Err(_), _) => Ok((Piece::from_python(body, name)?, motion_of(motion, &argument)?)),
+    }
 }
 
 /// Two bodies and their motions, as a value: query the first contact, save and replay it.
@@ -321,7 +345,7 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
 /// >>> door = ConvexPolyhedron.cuboid([0, -0.02, 0], [1, 0.02, 2])
 /// >>> post = ConvexPolyhedron.cuboid([0.55, 0.55, 0], [0.65, 0.65, 2])
 /// >>> swing = Motion.turn([0, 0, 0], [0, 0, 1], degrees=90)
-/// >>> found = MotionCast(door, post, moving_motion=swing).first_contact()
+/// >>> found = MotionCast(door, post, moving_motion=swing).motion()
 /// >>> found.outcome, round(found.lower, 9), found.upper - found.lower < 1e-11
 /// ('contact', 0.432115832, True)
 /// >>> found.verify()
@@ -355,15 +379,11 @@ impl MotionCast {
     ) -> PyResult<Self> {
         let start_overlap =
             if ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
+        let (moving, moving_motion) = moving_body(bodies[0], motions[0], "moving")?;
+        let (fixed, fixed_motion) = moving_body(bodies[1], motions[1], "fixed")?;
         Ok(Self {
-            bodies: [
-                Piece::from_python(bodies[0], "moving")?,
-                Piece::from_python(bodies[1], "fixed")?,
-            ],
-            motions: [
-                motion_of(motions[0], "moving_motion")?,
-                motion_of(motions[1], "fixed_motion")?,
-            ],
+            bodies: [moving, fixed],
+            motions: [moving_motion, fixed_motion],
             min_gap,
             tolerance,
             start_overlap,
@@ -501,12 +521,13 @@ impl MotionCast {
         Ok(query)
     }
 
-    /// Computes when the bodies first meet; see :func:`first_contact`.
+    /// Computes when the bodies first meet; see :func:`motion`.
+    #[pyo3(name = "motion")]
     fn first_contact(slf: &Bound<'_, Self>) -> PyResult<FirstContact> {
         Ok(FirstContact { found: Self::first(slf)?, query: slf.clone().unbind() })
     }
 
-    /// Computes how far the body can move; see :func:`motion_clearance`.
+    /// Computes how far the body can move; see :func:`colltrans.motions.motion_clearance`.
     fn clearance(slf: &Bound<'_, Self>) -> PyResult<MotionClearance> {
         Ok(MotionClearance { found: Self::cleared(slf)?, query: slf.clone().unbind() })
     }
@@ -635,15 +656,14 @@ getters!(FirstContact, |it| {
         let none = if free { 1.0 } else { 0.0 };
         contact!(it.found, contact => contact.lower).unwrap_or(none)
     };
-    /// float or None: The bodies meet at this time; None if that is not proven, or if they never meet.
-    upper: Option<f64> = {
+    /// float: The bodies meet at this time; infinite if that is not proven, or if they never meet.
+    upper: f64 = {
         let overlapping = matches!(
             it.found,
             Of::Convex(MotionOutcome::Overlapping(_)) | Of::Solids(MotionOutcome::Overlapping(_))
         );
-        let upper =
-            contact!(it.found, contact => contact.upper).filter(|upper| upper.is_finite());
-        upper.or(overlapping.then_some(0.0))
+        let none = if overlapping { 0.0 } else { f64::INFINITY };
+        contact!(it.found, contact => contact.upper).unwrap_or(none)
     };
     /// tuple of (Pose, Pose) or None: The poses of both bodies at ``lower``, up to rounding; None if they
     /// never meet or overlap at the start.
@@ -679,6 +699,27 @@ getters!(FirstContact, |it| {
     };
 });
 
+impl FirstContact {
+    /// Returns the time of the first contact: infinite if there is none, `None` if the search was cut off.
+    fn time(&self) -> Option<f64> {
+        match &self.found {
+            Of::Convex(MotionOutcome::Free(_)) | Of::Solids(MotionOutcome::Free(_)) => {
+                Some(f64::INFINITY)
+            }
+            Of::Convex(MotionOutcome::Undecided(_)) | Of::Solids(MotionOutcome::Undecided(_)) => {
+                None
+            }
+            _ => Some(middle(self.lower(), self.upper())),
+        }
+    }
+}
+
+number!(FirstContact, Option<f64>, |it| it.time(),
+    /// float or None: The time of the first contact, from 0 to 1: the middle of both bounds, or ``lower`` without a
+    /// finite ``upper``. Infinite if the bodies never meet. None if the answer is undecided, for which ``float`` raises
+    /// a TypeError.
+);
+
 #[pymethods]
 impl FirstContact {
     /// Checks the proof with the bodies alone. Between solids the query runs again to build the proof.
@@ -705,8 +746,7 @@ impl FirstContact {
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let outcome = self.outcome(py)?;
-        let upper = self.upper().map_or_else(|| "None".into(), |upper| format!("{upper:?}"));
-        Ok(format!("FirstContact({outcome:?}, lower={:?}, upper={upper})", self.lower()))
+        Ok(format!("FirstContact({outcome:?}, lower={:?}, upper={:?})", self.lower(), self.upper()))
     }
 }
 
@@ -755,7 +795,7 @@ type Cleared = Of<motion::MotionClearance, motion::MotionClearance<()>>;
 /// - ``"blocked"``: the body can safely move until ``time``, which is 0 if it is blocked at the start;
 /// - ``"free"``: the body can move to the end;
 /// - ``"overlapping"``: at the start of the motion the bodies overlap by more than the tolerance.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.motions")]
 pub(crate) struct MotionClearance {
     found: Cleared,
     query: Py<MotionCast>,
@@ -810,6 +850,14 @@ getters!(MotionClearance, |it| {
         Of::Convex(found) => found.time(),
         Of::Solids(found) => found.time(),
     };
+    /// float or None: The :attr:`time`.
+    lower: Option<f64> = it.time();
+    /// float or None: An upper bound of the time at which the body is stopped: the second of :attr:`bounds`, infinite
+    /// if it is not proven. It is 1 if the body can move to the end, None if the bodies overlap at the start.
+    upper: Option<f64> = match it.stop() {
+        Some(stop) => Some(stop.place[1]),
+        None => it.time(),
+    };
     /// tuple of (float, float or None) or None: Bounds of the time at which the stopping features meet in
     /// their nominal position; None if nothing stops the body. The first one is extrapolated, without a proof, if
     /// the nominal bodies are apart at no sampled time or no contact of them is found. At the second one the
@@ -828,6 +876,10 @@ getters!(MotionClearance, |it| {
         _ => None,
     };
 });
+
+number!(MotionClearance, Option<f64>, |it| it.time(),
+    /// float or None: The :attr:`time`; ``float`` raises a TypeError if it is None.
+);
 
 #[pymethods]
 impl MotionClearance {
@@ -935,13 +987,14 @@ impl Answer for Cleared {
 ///
 /// Examples
 /// --------
-/// >>> from colltrans import ConvexPolyhedron, Motion, first_contact
+/// >>> from colltrans import ConvexPolyhedron, Motion, motion
 /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 /// >>> slide = Motion.slide([8, 0, 0], pose=[-4, 0.5, 0])
-/// >>> found = first_contact(cube, cube, slide)
+/// >>> found = motion(cube, cube, slide)
 /// >>> found.lower <= 0.375 <= found.upper, found.normal
 /// (True, array([1., 0., 0.]))
 #[pyfunction]
+#[pyo3(name = "motion")]
 #[pyo3(signature = (moving, fixed, moving_motion, fixed_motion=None, *, min_gap=0.0, tolerance=None))]
 pub(crate) fn first_contact(
     py: Python<'_>,
@@ -974,7 +1027,8 @@ pub(crate) fn first_contact(
 ///
 /// Examples
 /// --------
-/// >>> from colltrans import ConvexPolyhedron, Motion, motion_clearance
+/// >>> from colltrans import ConvexPolyhedron, Motion
+/// >>> from colltrans.motions import motion_clearance
 /// >>> block = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 /// >>> table = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
 /// >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [0, 0, 1], radians=2))

@@ -8,15 +8,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use colltrans::glam::DVec3;
 use colltrans::{AnyBody, ObstacleId, QueryError, SceneClearance, SceneQuery};
-use numpy::{IntoPyArray, PyArrayMethods};
+use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::vector;
-use crate::bulk::each;
-use crate::errors::{OrRaise, input_error};
+use crate::arrays::{points, vector};
+use crate::bulk::{Answered, each};
+use crate::errors::{OrRaise, error, input_error};
+use crate::placed::place;
 use crate::pose::{Pose, pose};
+use crate::rows::Table;
 use crate::scene::{Scene, SceneRequest, with_min_gap};
 use crate::scene_answers::{
     NearbyObstacles, NearestObstacle, ObstacleClearance, outcome_of, upper_of,
@@ -85,7 +87,7 @@ impl Obstacles {
         ignore: &HashSet<u64>,
         threads: Option<usize>,
         question: impl Fn(usize, &SceneQuery<'_>) -> Result<T, QueryError> + Sync,
-    ) -> PyResult<Vec<T>> {
+    ) -> PyResult<Vec<Result<T, String>>> {
         py.detach(|| {
             let kept = self.scene.read();
             each(poses.len(), CHUNK, threads, |k| {
@@ -117,9 +119,15 @@ fn unknown_obstacle_error(obstacle: u64) -> PyErr {
     ))
 }
 
-/// Reads the poses of an array or a sequence.
+/// Reads rows of poses, as bulk queries accept them.
 fn read_poses(of: &Bound<'_, PyAny>) -> PyResult<Vec<colltrans::Pose>> {
-    of.try_iter()?.map(|one| pose(Some(&one?), "poses")).collect()
+    let stack = of.py().import("colltrans.queries")?.getattr("pose_table")?.call1((of, "poses"))?;
+    let rows = stack.getattr("rows")?;
+    let numbers: PyReadonlyArray2<'_, f64> = rows.extract()?;
+    let width = numbers.shape()[1];
+    let table = Table { name: "poses", numbers: numbers.as_slice()?, width };
+    let row = |row| table.pose(row).map_err(|what| error("PoseError", what));
+    (0..numbers.shape()[0]).map(row).collect()
 }
 
 fn vector_table(py: Python<'_>, all: Vec<[f64; 3]>) -> PyResult<Bound<'_, PyAny>> {
@@ -138,9 +146,9 @@ impl Obstacles {
     ///
     /// Parameters
     /// ----------
-    /// body : ConvexPolyhedron or Solid
+    /// body : ConvexPolyhedron, Solid or Placed
     /// pose : array_like or Pose, optional
-    ///     The pose of the body.
+    ///     The pose of the body, unless it is given as ``body.at(pose)``.
     ///
     /// Returns
     /// -------
@@ -153,8 +161,8 @@ impl Obstacles {
         body: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<u64> {
-        let at = self::pose(pose, "pose")?;
-        let ids = self.insert(py, std::slice::from_ref(body), vec![at])?;
+        let (body, at) = place(body, pose, "body")?;
+        let ids = self.insert(py, &[body], vec![at])?;
         Ok(ids[0])
     }
 
@@ -162,9 +170,10 @@ impl Obstacles {
     ///
     /// Parameters
     /// ----------
-    /// body : ConvexPolyhedron, Solid or sequence of them
-    ///     One body for all poses, or one for each.
-    /// poses : array_like of shape (N, ...), or sequence of Pose
+    /// body : ConvexPolyhedron, Solid, or sequence of them
+    ///     One body for all poses, or one for each. A sequence of placed bodies, ``body.at(pose)``, has its poses.
+    /// pose : array_like of shape (N, ...), or sequence of Pose, optional
+    ///     Rows of poses, as for :func:`colltrans.cast_many`.
     ///
     /// Returns
     /// -------
@@ -175,12 +184,18 @@ impl Obstacles {
     /// ------
     /// InputError
     ///     The numbers of bodies and poses differ.
+    #[pyo3(signature = (body, pose=None))]
     fn add_many(
         &self,
         py: Python<'_>,
         body: &Bound<'_, PyAny>,
-        poses: &Bound<'_, PyAny>,
+        pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Vec<u64>> {
+        let Some(poses) = pose else {
+            let all = body.try_iter()?.map(|one| place(&one?, None, "body"));
+            let (bodies, poses) = all.collect::<PyResult<(Vec<_>, Vec<_>)>>()?;
+            return self.insert(py, &bodies, poses);
+        };
         let poses = read_poses(poses)?;
         if Piece::from_python(body, "body").is_ok() {
             return self.insert(py, std::slice::from_ref(body), poses);
@@ -271,9 +286,9 @@ impl Obstacles {
     ///
     /// Parameters
     /// ----------
-    /// body : ConvexPolyhedron or Solid
+    /// body : ConvexPolyhedron, Solid or Placed
     /// pose : array_like or Pose, optional
-    ///     The pose of the body.
+    ///     The pose of the body, unless it is given as ``body.at(pose)``.
     /// ignore : iterable of int
     ///     Obstacles that are ignored, for example the parts of a gripper.
     ///
@@ -296,7 +311,7 @@ impl Obstacles {
         pose: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
     ) -> PyResult<Option<NearestObstacle>> {
-        let (body, at) = (Piece::from_python(body, "body")?, self::pose(pose, "pose")?);
+        let (body, at) = Piece::placed(body, pose, "body")?;
         let (found, asked) = self.ask(py, (body, at), ignore, |among| among.nearest())?;
         Ok(found.map(|found| NearestObstacle { found, asked }))
     }
@@ -330,7 +345,7 @@ impl Obstacles {
         pose: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
     ) -> PyResult<NearbyObstacles> {
-        let (body, at) = (Piece::from_python(body, "body")?, self::pose(pose, "pose")?);
+        let (body, at) = Piece::placed(body, pose, "body")?;
         let (found, asked) = self.ask(py, (body, at), ignore, |among| among.within(length))?;
         Ok(NearbyObstacles { found, length, asked })
     }
@@ -371,7 +386,7 @@ impl Obstacles {
         min_gap: f64,
         #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
     ) -> PyResult<ObstacleClearance> {
-        let (body, at) = (Piece::from_python(body, "body")?, self::pose(pose, "pose")?);
+        let (body, at) = Piece::placed(body, pose, "body")?;
         let direction = vector(direction, "direction")?;
         let before = before.unwrap_or(f64::INFINITY);
         let ask =
@@ -386,49 +401,25 @@ impl Obstacles {
     /// ----------
     /// body, ignore
     ///     See :meth:`nearest`.
-    /// poses : array_like of shape (N, ...), or sequence of Pose
+    /// pose : array_like of shape (N, ...), or sequence of Pose
+    ///     Rows of poses, as for :func:`colltrans.cast_many`.
     /// threads : int, optional
     ///     The default is the number of processors. Answers do not depend on it.
     ///
     /// Returns
     /// -------
-    /// dict of ndarray
-    ///     Columns ``obstacle`` (-1 without obstacles), ``lower`` and ``upper`` (infinite without obstacles),
-    ///     ``on_moving`` and ``on_fixed`` (NaN without obstacles).
-    ///
-    /// Raises
-    /// ------
-    /// QueryError
-    ///     A row has no answer; the message has the first such row and the reason.
-    #[pyo3(signature = (body, poses, *, ignore=HashSet::new(), threads=None),
-        text_signature = "($self, body, poses, *, ignore=(), threads=None)")]
+    /// colltrans.scenes.NearestColumns
+    #[pyo3(signature = (body, pose, *, ignore=HashSet::new(), threads=None),
+        text_signature = "($self, body, pose, *, ignore=(), threads=None)")]
     fn nearest_many<'py>(
-        &self,
-        py: Python<'py>,
+        slf: &Bound<'py, Self>,
         body: &Bound<'py, PyAny>,
-        poses: &Bound<'py, PyAny>,
+        pose: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
         threads: Option<usize>,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let (body, poses) = (Piece::from_python(body, "body")?, read_poses(poses)?);
-        let found = self.ask_rows(py, (&body, &poses), &ignore, threads, |_, a| a.nearest())?;
-        let column = |of: fn(&colltrans::Nearest) -> f64| -> Vec<f64> {
-            found.iter().map(|n| n.as_ref().map_or(f64::INFINITY, of)).collect()
-        };
-        let points = |of: fn(&colltrans::AnyDistance) -> DVec3| {
-            let point = |n: &colltrans::Nearest| of(&n.distance).to_array();
-            let all = found.iter().map(|n| n.as_ref().map_or([f64::NAN; 3], point));
-            vector_table(py, all.collect())
-        };
-        let id = |n: &Option<colltrans::Nearest>| n.map_or(-1, |n| n.obstacle.0 as i64);
-        let ids: Vec<i64> = found.iter().map(id).collect();
-        let columns = PyDict::new(py);
-        columns.set_item("obstacle", ids.into_pyarray(py))?;
-        columns.set_item("lower", column(|n| n.lower).into_pyarray(py))?;
-        columns.set_item("upper", column(|n| n.distance.upper()).into_pyarray(py))?;
-        columns.set_item("on_moving", points(|d| d.on_moving())?)?;
-        columns.set_item("on_fixed", points(|d| d.on_fixed())?)?;
-        Ok(columns)
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let scenes = slf.py().import("colltrans.scenes")?;
+        scenes.getattr("_nearest_many")?.call1((slf, body, pose, ignore, threads))
     }
 
     /// Runs :meth:`clearance` for many poses and directions, on several threads.
@@ -437,22 +428,72 @@ impl Obstacles {
     /// ----------
     /// body, before, min_gap, ignore
     ///     See :meth:`clearance`.
-    /// directions : array_like of shape (N, 3) or (3,)
+    /// direction : array_like of shape (N, 3) or (3,)
     ///     One direction for each pose, or one for all.
-    /// poses, threads
+    /// pose, threads
     ///     See :meth:`nearest_many`.
     ///
     /// Returns
     /// -------
-    /// dict of ndarray
-    ///     Columns ``outcome`` (0 is blocked, 1 free, 2 overlapping), ``obstacle`` (-1 if nothing stops the
-    ///     body), ``distance`` (at most ``before``; NaN for an overlap) and ``upper``, an upper bound of the
-    ///     translation at which the body is stopped (infinite if nothing stops it, NaN for an overlap).
-    #[pyo3(signature = (body, directions, poses, *, before=None, min_gap=0.0,
-        ignore=HashSet::new(), threads=None), text_signature = "($self, body, directions, poses, \
-        *, before=None, min_gap=0.0, ignore=(), threads=None)")]
+    /// colltrans.scenes.ObstacleClearanceColumns
+    #[pyo3(signature = (body, direction, pose, *, before=None, min_gap=0.0, ignore=HashSet::new(),
+        threads=None), text_signature = "($self, body, direction, pose, *, before=None, \
+        min_gap=0.0, ignore=(), threads=None)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn clearance_many<'py>(
+        slf: &Bound<'py, Self>,
+        body: &Bound<'py, PyAny>,
+        direction: &Bound<'py, PyAny>,
+        pose: &Bound<'py, PyAny>,
+        before: Option<f64>,
+        min_gap: f64,
+        #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let scenes = slf.py().import("colltrans.scenes")?;
+        let arguments = (slf, body, direction, pose, before, min_gap, ignore, threads);
+        scenes.getattr("_clearance_many")?.call1(arguments)
+    }
+
+    /// Answers :meth:`nearest` for many poses; see `colltrans.scenes`.
+    fn _nearest_rows<'py>(
+        &self,
+        py: Python<'py>,
+        body: &Bound<'py, PyAny>,
+        poses: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
+        threads: Option<usize>,
+    ) -> PyResult<Answered<'py>> {
+        let (body, poses) = (Piece::from_python(body, "body")?, read_poses(poses)?);
+        let found = self.ask_rows(py, (&body, &poses), &ignore, threads, |_, a| a.nearest())?;
+        let found: Vec<_> = found.into_iter().map(Result::transpose).collect();
+        let outcomes = &["found", "none", "error"];
+        answered(
+            py,
+            &found,
+            outcomes,
+            |row| u8::from(row.is_none()),
+            |columns, all| {
+                let column = |of: fn(&colltrans::Nearest) -> f64| -> Vec<f64> {
+                    all.iter().map(|n| n.map_or(f64::NAN, of)).collect()
+                };
+                let points = |of: fn(&colltrans::AnyDistance) -> DVec3| {
+                    let point = |n: &colltrans::Nearest| of(&n.distance).to_array();
+                    vector_table(py, all.iter().map(|n| n.map_or([f64::NAN; 3], point)).collect())
+                };
+                let ids = all.iter().map(|n| n.map_or(-1, |n| n.obstacle.0 as i64));
+                columns.set_item("obstacle", ids.collect::<Vec<_>>().into_pyarray(py))?;
+                columns.set_item("lower", column(|n| n.lower).into_pyarray(py))?;
+                columns.set_item("upper", column(|n| n.distance.upper()).into_pyarray(py))?;
+                columns.set_item("on_moving", points(|d| d.on_moving())?)?;
+                columns.set_item("on_fixed", points(|d| d.on_fixed())?)
+            },
+        )
+    }
+
+    /// Answers :meth:`clearance` for many poses and directions; see `colltrans.scenes`.
+    #[expect(clippy::too_many_arguments, reason = "the Python caller passes each part of a query")]
+    fn _clearance_rows<'py>(
         &self,
         py: Python<'py>,
         body: &Bound<'py, PyAny>,
@@ -462,37 +503,69 @@ impl Obstacles {
         min_gap: f64,
         #[pyo3(from_py_with = obstacle_numbers)] ignore: HashSet<u64>,
         threads: Option<usize>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Answered<'py>> {
         let (body, poses) = (Piece::from_python(body, "body")?, read_poses(poses)?);
-        let one = vector(directions, "directions").map(|one| vec![one]);
-        let rows = || directions.try_iter()?.map(|one| vector(&one?, "directions")).collect();
-        let directions: Vec<DVec3> = one.or_else(|_| rows())?;
-        if directions.len() != 1 && directions.len() != poses.len() {
-            let what = format!("{} for {} poses", directions.len(), poses.len());
-            return Err(input_error("directions", what));
-        }
+        let directions = points(directions, "direction")?;
         let before = before.unwrap_or(f64::INFINITY);
         let ask = |k: usize, among: &SceneQuery<'_>| {
             clearance_with_min_gap(among, directions[k.min(directions.len() - 1)], before, min_gap)
         };
         let found = self.ask_rows(py, (&body, &poses), &ignore, threads, ask)?;
-        let kind = |one: &SceneClearance| match outcome_of(one) {
-            "blocked" => 0_u8,
-            "free" => 1,
-            _ => 2,
+        let outcomes = &["blocked", "free", "overlapping", "error"];
+        let code = |one: &SceneClearance| {
+            let name = outcome_of(one);
+            outcomes.iter().position(|known| *known == name).unwrap_or_default() as u8
         };
-        let columns = PyDict::new(py);
-        let outcome: Vec<u8> = found.iter().map(kind).collect();
-        let id = |one: &SceneClearance| one.stop.map_or(-1, |(id, _)| id.0 as i64);
-        let ids: Vec<i64> = found.iter().map(id).collect();
-        let distance = found.iter().map(|one| one.safe_translation().unwrap_or(f64::NAN));
-        let upper = found.iter().map(upper_of);
-        columns.set_item("outcome", outcome.into_pyarray(py))?;
-        columns.set_item("obstacle", ids.into_pyarray(py))?;
-        columns.set_item("distance", distance.collect::<Vec<_>>().into_pyarray(py))?;
-        columns.set_item("upper", upper.collect::<Vec<_>>().into_pyarray(py))?;
-        Ok(columns)
+        let found: Vec<_> = found.into_iter().map(Some).collect();
+        answered(
+            py,
+            &found,
+            outcomes,
+            |row| row.map_or(0, code),
+            |columns, all| {
+                let id = |one: &SceneClearance| one.stop.map_or(-1, |(id, _)| id.0 as i64);
+                let ids = all.iter().map(|one| one.map_or(-1, id));
+                let distance = |one: &SceneClearance| one.safe_translation().unwrap_or(f64::NAN);
+                let number = |of: &dyn Fn(&SceneClearance) -> f64| -> Vec<f64> {
+                    all.iter().map(|one| one.map_or(f64::NAN, of)).collect()
+                };
+                columns.set_item("obstacle", ids.collect::<Vec<_>>().into_pyarray(py))?;
+                columns.set_item("distance", number(&distance).into_pyarray(py))?;
+                columns.set_item("upper", number(&upper_of).into_pyarray(py))
+            },
+        )
     }
+}
+
+/// An answer of each row that may be absent, or the reason of a failure.
+type RowAnswer<T> = Option<Result<T, String>>;
+
+/// Builds the columns of rows: the outcomes, those that `write` adds, and the messages of failed rows.
+fn answered<'py, T>(
+    py: Python<'py>,
+    rows: &[RowAnswer<T>],
+    outcomes: &'static [&'static str],
+    code: impl Fn(Option<&T>) -> u8,
+    write: impl FnOnce(&Bound<'py, PyDict>, &[Option<&T>]) -> PyResult<()>,
+) -> PyResult<Answered<'py>> {
+    let (columns, messages) = (PyDict::new(py), PyDict::new(py));
+    let error = outcomes.len() as u8 - 1;
+    let mut codes = Vec::with_capacity(rows.len());
+    for (row, found) in rows.iter().enumerate() {
+        codes.push(match found {
+            Some(Err(what)) => {
+                messages.set_item(row, what)?;
+                error
+            }
+            Some(Ok(found)) => code(Some(found)),
+            None => code(None),
+        });
+    }
+    columns.set_item("outcome", codes.into_pyarray(py))?;
+    let all: Vec<_> =
+        rows.iter().map(|row| row.as_ref().and_then(|row| row.as_ref().ok())).collect();
+    write(&columns, &all)?;
+    Ok((columns, outcomes, messages))
 }
 
 impl Obstacles {

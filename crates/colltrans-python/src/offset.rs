@@ -9,7 +9,7 @@ use crate::arrays::{Indices, ids};
 use crate::frozen::{getters, match_args, pickled};
 
 /// The effect of moving the faces of a convex body.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.answers")]
 #[derive(Serialize, Deserialize)]
 pub(crate) struct OffsetReport {
     farthest: f64,
@@ -42,7 +42,7 @@ impl OffsetReport {
 }
 
 /// The vertices and facets of a solid for which shrinking or growing failed.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.answers")]
 #[derive(Serialize, Deserialize)]
 pub(crate) struct ShrinkReport {
     farthest: f64,

@@ -10,6 +10,7 @@ use crate::certificate::{Certificate, Separation};
 use crate::errors::{OrRaise, error};
 use crate::features::{Features, Steps};
 use crate::frozen::{Reduced, getters, match_args, read, reduced, written};
+use crate::number::number;
 use crate::pose::Pose;
 use crate::query::Cast;
 
@@ -26,6 +27,10 @@ getters!(Contact, |it| {
     /// float: The collision translation, in multiples of the direction. If it is negative, the contact is
     /// behind the body, or the bodies overlap at the start.
     translation: f64 = it.contact.translation;
+    /// float: A proven lower bound of the translation.
+    lower: f64 = it.contact.certificate.lower;
+    /// float: A proven upper bound of the translation; infinite if the contact is not proven.
+    upper: f64 = it.contact.certificate.upper;
     /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
     normal(py): Vector<'py> = row(py, it.contact.normal);
     /// ndarray of shape (3,): The contact point, in the world.
@@ -52,6 +57,10 @@ getters!(Contact, |it| {
     steps: Steps = Steps(it.contact.steps);
 });
 
+number!(Contact, f64, |it| it.contact.translation,
+    /// float: The :attr:`translation`.
+);
+
 #[pymethods]
 impl Contact {
     fn __repr__(&self) -> String {
@@ -77,12 +86,20 @@ getters!(Grazing, |it| {
     /// float: The overlap of the shadows, a length. It is negative if they may be disjoint by less than
     /// rounding errors.
     overlap: f64 = it.grazing.overlap;
+    /// float: A proven lower bound of the translation at which the bodies meet.
+    lower: f64 = it.grazing.contact.certificate.lower;
+    /// float: A proven upper bound of that translation; infinite if the bodies may pass each other.
+    upper: f64 = it.grazing.contact.certificate.upper;
     /// ndarray of shape (3,): Unit vector of the world, perpendicular to the direction, from the moving
     /// body's shadow to the fixed one's.
     separating_direction(py): Vector<'py> = row(py, it.grazing.separating_direction);
     /// Contact: The contact that results if the overlap is real.
     contact(py): Contact = Contact { contact: it.grazing.contact, query: it.query(py) };
 });
+
+number!(Grazing, f64, |it| it.grazing.contact.translation,
+    /// float: The translation of the contact that results if the overlap is real.
+);
 
 #[pymethods]
 impl Grazing {
@@ -115,11 +132,19 @@ getters!(Separated, |it| {
         Separation { proof: it.separated.certificate, query: it.query.clone_ref(py) };
     /// float: The free travel of the moving body: infinite.
     distance: f64 = f64::INFINITY;
+    /// float: Infinite.
+    lower: f64 = f64::INFINITY;
+    /// float: Infinite.
+    upper: f64 = f64::INFINITY;
     /// str: The solver of the query, with ``auto`` replaced by its choice.
     solver: &'static str = it.separated.solver.name();
     /// Steps: Number of steps of the search.
     steps: Steps = Steps(it.separated.steps);
 });
+
+number!(Separated, f64, |_| f64::INFINITY,
+    /// float: Infinite, because the bodies never meet.
+);
 
 #[pymethods]
 impl Separated {
@@ -143,9 +168,13 @@ getters!(ContactRange, |it| {
         let [enter, exit] = it.range.interval().unwrap_or([f64::NAN; 2]);
         (enter, exit + 0.0)
     };
+    /// float: A proven lower bound of the first translation.
+    lower: f64 = it.range.bounds().map_or(f64::NAN, |[first, _]| first.lower);
+    /// float: A proven upper bound of the first translation.
+    upper: f64 = it.range.bounds().map_or(f64::NAN, |[first, _]| first.upper);
     /// Contact or Grazing: The first contact along the direction.
     first(py): PyResult<Bound<'py, PyAny>> = {
-        let first = match it.range {
+        let first: Outcome = match it.range {
             Range::Contact { first, .. } => Outcome::Contact(first),
             Range::Grazing { first, .. } => Outcome::Grazing(first),
             Range::Separated(separated) => Outcome::Separated(separated),
@@ -163,6 +192,10 @@ getters!(ContactRange, |it| {
     };
 });
 
+number!(ContactRange, f64, |it| it.interval().0,
+    /// float: The first translation of the :attr:`interval`.
+);
+
 #[pymethods]
 impl ContactRange {
     fn __repr__(&self) -> String {
@@ -173,7 +206,7 @@ impl ContactRange {
 /// The last contact along the direction. The bodies are apart beyond it.
 ///
 /// ``turned`` is the first contact of the reversed query, which has the proof.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.answers")]
 pub(crate) struct LastContact {
     /// The outcome of the reversed query.
     found: Outcome,
@@ -202,11 +235,10 @@ impl LastContact {
 getters!(LastContact, |it| {
     /// float: The translation, in multiples of the direction.
     translation: PyResult<f64> = Ok(it.contact()?.exit().value + 0.0);
-    /// tuple of float: Proven bounds of the translation. The bodies never meet beyond the second one.
-    bounds: PyResult<(f64, f64)> = {
-        let exit = it.contact()?.exit();
-        Ok((exit.lower + 0.0, exit.upper + 0.0))
-    };
+    /// float: A proven lower bound of the translation.
+    lower: PyResult<f64> = Ok(it.contact()?.exit().lower + 0.0);
+    /// float: A proven upper bound of the translation. The bodies never meet beyond it.
+    upper: PyResult<f64> = Ok(it.contact()?.exit().upper + 0.0);
     /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
     normal(py): PyResult<Vector<'py>> = Ok(row(py, it.contact()?.normal));
     /// ndarray of shape (3,): The contact point, in the world.
@@ -225,6 +257,10 @@ getters!(LastContact, |it| {
     /// opposite sign.
     turned(py): PyResult<Bound<'py, PyAny>> = it.found.object(it.turned.bind(py));
 });
+
+number!(LastContact, f64, |it| it.translation()?,
+    /// float: The :attr:`translation`.
+);
 
 #[pymethods]
 impl LastContact {
@@ -269,7 +305,8 @@ impl Answer for Range {
 
     fn object<'py>(self, query: &Bound<'py, Cast>) -> PyResult<Bound<'py, PyAny>> {
         if let Self::Separated(separated) = self {
-            return Outcome::Separated(separated).object(query);
+            let outcome: Outcome = Outcome::Separated(separated);
+            return outcome.object(query);
         }
         object(query.py(), ContactRange { range: self, query: query.clone().unbind() })
     }

@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 
 use crate::errors::{OrRaise, error};
 use crate::frozen::{Options, Shown, html, show};
-use crate::pose::{Pose, pose};
+use crate::pose::Pose;
 use crate::solid::Piece;
 use crate::solid_cast::{placed_bodies, run_patiently};
 
@@ -32,7 +32,7 @@ use crate::solid_cast::{placed_bodies, run_patiently};
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Pair {
     pub(crate) bodies: [Piece; 2],
-    poses: [colltrans::Pose; 2],
+    pub(crate) poses: [colltrans::Pose; 2],
 }
 
 /// A value for convex bodies or for solids.
@@ -60,10 +60,9 @@ impl Pair {
         fixed: &Bound<'_, PyAny>,
         poses: [Option<&Bound<'_, PyAny>>; 2],
     ) -> PyResult<Self> {
-        Ok(Self {
-            bodies: [Piece::from_python(moving, "moving")?, Piece::from_python(fixed, "fixed")?],
-            poses: [pose(poses[0], "moving_pose")?, pose(poses[1], "fixed_pose")?],
-        })
+        let (moving, moving_pose) = Piece::placed(moving, poses[0], "moving")?;
+        let (fixed, fixed_pose) = Piece::placed(fixed, poses[1], "fixed")?;
+        Ok(Self { bodies: [moving, fixed], poses: [moving_pose, fixed_pose] })
     }
 
     /// Builds the pair of the library.

@@ -3,7 +3,7 @@
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PySequence;
+use pyo3::types::{PyList, PySequence, PyTuple};
 
 use crate::arrays::{Numbers, Shape, Vector, numbers, plain_numbers, row, table};
 use crate::errors::{OrRaise, input_error, warn_of_rounded_pose};
@@ -14,11 +14,19 @@ use crate::frozen::getters;
 /// Parameters
 /// ----------
 /// source : array_like, Pose or object with ``as_matrix()``, optional
-///     A translation ``(3,)``; a translation and a unit quaternion ``(7,)``: x, y, z, then qx, qy, qz, qw; a
-///     matrix ``(3, 4)`` or ``(4, 4)``, whose entries are used without normalisation; or an object with a
-///     method ``as_matrix()`` (``scipy.spatial.transform``). The default is the identity. A rotation with few
-///     digits, with a defect above 1e-6 and at most 0.02, is replaced by the nearest rotation with a
-///     ``RoundedPoseWarning``.
+///     One of these; the default is the identity:
+///
+///     - a translation ``(3,)``;
+///     - a translation and a unit quaternion ``(7,)``: x, y, z, then qx, qy, qz, qw, or the pair of both, ``((x, y,
+///       z), (qx, qy, qz, qw))``, as pybullet returns it;
+///     - a rotation matrix ``(3, 3)``, or a matrix ``(3, 4)`` or ``(4, 4)``;
+///     - an object with a method ``as_matrix()``, such as a ``Rotation`` of ``scipy.spatial.transform``.
+///
+/// Notes
+/// -----
+/// Quaternions are normalised. The entries of a matrix are used as they are. A rotation with few digits, with a
+/// defect above 1e-6 and at most 0.02, is replaced by the nearest rotation with a ``RoundedPoseWarning``. Directions
+/// are never normalised: translations are multiples of them. Axes of motions may have any length.
 ///
 /// Raises
 /// ------
@@ -103,31 +111,49 @@ pub(crate) fn pose(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<colltr
 }
 
 /// The numbers of an argument that is not a [`Pose`].
-pub(crate) enum Bare {
-    /// The numbers of the argument itself.
-    Numbers(Numbers),
-    /// The numbers that its method `as_matrix` returns.
-    Matrix(Numbers),
-}
+///
+/// They are those of the argument itself, or of the matrix that its method `as_matrix` returns.
+pub(crate) struct Bare(pub(crate) Numbers);
 
 /// Returns the numbers of an argument that describes a pose and is not a [`Pose`].
 pub(crate) fn bare_numbers(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Bare> {
     if let Some(found) = plain_numbers(of) {
-        return Ok(Bare::Numbers(found));
+        return Ok(Bare(found));
+    }
+    if let Some(found) = position_and_quaternion(of, name)? {
+        return Ok(Bare(found));
     }
     refuse_list_of_poses(of, name)?;
     match of.getattr_opt("as_matrix")? {
-        Some(as_matrix) => numbers(&as_matrix.call0()?, name).map(Bare::Matrix),
-        None => numbers(of, name).map(Bare::Numbers),
+        Some(as_matrix) => numbers(&as_matrix.call0()?, name).map(Bare),
+        None => numbers(of, name).map(Bare),
     }
+}
+
+/// Reads a pair of a position `(3,)` and a quaternion `(4,)`, as pybullet returns it, as seven numbers.
+fn position_and_quaternion(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Option<Numbers>> {
+    if !of.is_instance_of::<PyTuple>() && !of.is_instance_of::<PyList>() {
+        return Ok(None);
+    }
+    let pair = of.cast::<PySequence>()?;
+    if pair.len()? != 2 {
+        return Ok(None);
+    }
+    let (position, quaternion) = (pair.get_item(0)?, pair.get_item(1)?);
+    let has_items = |item: &Bound<'_, PyAny>, n| item.len().is_ok_and(|len| len == n);
+    if !has_items(&position, 3) || !has_items(&quaternion, 4) {
+        return Ok(None);
+    }
+    let (position, quaternion) = (numbers(&position, name)?, numbers(&quaternion, name)?);
+    let mut values = [0.0; 16];
+    values[..3].copy_from_slice(&position.values[..3]);
+    values[3..7].copy_from_slice(&quaternion.values[..4]);
+    Ok(Some(Numbers { values, shape: Shape::Row(7) }))
 }
 
 /// Builds a pose from three or seven numbers or from a matrix.
 pub(crate) fn pose_from_bare(py: Python<'_>, bare: &Bare, name: &str) -> PyResult<colltrans::Pose> {
-    let found = match bare {
-        Bare::Numbers(found) => found,
-        Bare::Matrix(found) => return pose_from_matrix(py, found, true, name),
-    };
+    let Bare(found) = bare;
     let [x, y, z, ..] = found.values;
     let translation = DVec3::new(x, y, z);
     match found.shape {
@@ -138,18 +164,12 @@ pub(crate) fn pose_from_bare(py: Python<'_>, bare: &Bare, name: &str) -> PyResul
             let rounded = colltrans::Pose::from_rounded(rotation, translation).or_raise()?;
             warn_if_rounded(py, rounded, name)
         }
-        _ => pose_from_matrix(py, found, false, name),
+        _ => pose_from_matrix(py, found, name),
     }
 }
 
-/// Builds a pose from a matrix with three or four rows. A matrix `(3, 3)` is accepted if `rotation_alone` is
-/// set.
-fn pose_from_matrix(
-    py: Python<'_>,
-    found: &Numbers,
-    rotation_alone: bool,
-    name: &str,
-) -> PyResult<colltrans::Pose> {
+/// Builds a pose from a matrix with three or four rows. A matrix `(3, 3)` is a rotation about the origin.
+fn pose_from_matrix(py: Python<'_>, found: &Numbers, name: &str) -> PyResult<colltrans::Pose> {
     let v = &found.values;
     let (columns, translation) = match found.shape {
         Shape::Table(3, 4) => (4, DVec3::new(v[3], v[7], v[11])),
@@ -160,10 +180,11 @@ fn pose_from_matrix(
                 format_args!("the last row is {:?}, not 0, 0, 0, 1", &v[12..]),
             ));
         }
-        Shape::Table(3, 3) if rotation_alone => (3, DVec3::ZERO),
+        Shape::Table(3, 3) => (3, DVec3::ZERO),
         shape => {
             let shape = shape.text();
-            let what = format_args!("an array of shape {shape}, not (3,), (7,), (3, 4) or (4, 4)");
+            let what =
+                format_args!("an array of shape {shape}, not (3,), (7,), (3, 3), (3, 4) or (4, 4)");
             return Err(input_error(name, what));
         }
     };

@@ -12,14 +12,15 @@ use crate::arrays::{Vector, row, vector};
 use crate::body::ConvexPolyhedron;
 use crate::errors::{OrRaise, error, query_error};
 use crate::frozen::{Options as Shows, Shown, getters, html, show};
-use crate::pose::{Pose, pose};
-use crate::solid::ConvexArgument;
+use crate::placed::place;
+use crate::pose::Pose;
+use crate::solid::convex_body;
 use crate::solver::options_of;
 
 /// The arguments that all queries share.
 pub(crate) struct Arguments<'a, 'py> {
-    pub(crate) moving: &'a Bound<'py, ConvexPolyhedron>,
-    pub(crate) fixed: &'a Bound<'py, ConvexPolyhedron>,
+    pub(crate) moving: &'a Bound<'py, PyAny>,
+    pub(crate) fixed: &'a Bound<'py, PyAny>,
     pub(crate) direction: &'a Bound<'py, PyAny>,
     pub(crate) poses: [Option<&'a Bound<'py, PyAny>>; 2],
     pub(crate) graze_tolerance: f64,
@@ -59,9 +60,9 @@ pub(crate) struct Arguments<'a, 'py> {
 /// >>> from colltrans import Cast, ConvexPolyhedron
 /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 /// >>> query = Cast(cube, cube, [1, 0, 0], moving_pose=[-3, 0.5, 0])
-/// >>> query.first_contact().translation
+/// >>> query.cast().translation
 /// 2.0
-/// >>> Cast.from_json(query.to_json()).first_contact().translation
+/// >>> Cast.from_json(query.to_json()).cast().translation
 /// 2.0
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Cast {
@@ -82,10 +83,12 @@ impl Cast {
     pub(crate) fn from_arguments(arguments: Arguments<'_, '_>) -> PyResult<Self> {
         let Arguments { moving, fixed, direction, poses, graze_tolerance, min_gap, solver } =
             arguments;
+        let (moving, moving_pose) = place(moving, poses[0], "moving")?;
+        let (fixed, fixed_pose) = place(fixed, poses[1], "fixed")?;
         Ok(Self {
-            moving: moving.clone().unbind(),
-            fixed: fixed.clone().unbind(),
-            poses: [pose(poses[0], "moving_pose")?, pose(poses[1], "fixed_pose")?],
+            moving: convex_body(&moving)?.unbind(),
+            fixed: convex_body(&fixed)?.unbind(),
+            poses: [moving_pose, fixed_pose],
             direction: vector(direction, "direction")?,
             options: options_of(solver)?
                 .with_graze_tolerance(graze_tolerance)
@@ -164,8 +167,8 @@ impl Cast {
         *, moving_pose=None, fixed_pose=None, graze_tolerance=0.0, min_gap=0.0, solver='auto')")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn new(
-        moving: ConvexArgument<'_>,
-        fixed: ConvexArgument<'_>,
+        moving: &Bound<'_, PyAny>,
+        fixed: &Bound<'_, PyAny>,
         direction: &Bound<'_, PyAny>,
         moving_pose: Option<&Bound<'_, PyAny>>,
         fixed_pose: Option<&Bound<'_, PyAny>>,
@@ -174,7 +177,6 @@ impl Cast {
         solver: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let poses = [moving_pose, fixed_pose];
-        let (moving, fixed) = (&moving.0, &fixed.0);
         let query = Self::from_arguments(Arguments {
             moving,
             fixed,

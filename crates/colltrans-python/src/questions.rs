@@ -1,17 +1,20 @@
 //! Queries: the functions of the package, and the query methods of casts and pairs.
 
-use colltrans::solid::SolidCast as _;
-use colltrans::{QueryError, Solver};
+use colltrans::glam::DVec3;
+use colltrans::solid::{SolidCast as _, SolidOptions};
+use colltrans::{Options, QueryError, Solver};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
 use crate::answer::Answer;
+use crate::body::ConvexPolyhedron;
 use crate::certificate::{Certificate, Separation, SolidCertificate};
 use crate::distance::{depth_of, distance_of, within_of};
 use crate::errors::{OrRaise, error};
 use crate::pair::Pair;
+use crate::placed::Placed;
 use crate::query::{Arguments, Cast};
-use crate::solid::ConvexArgument;
+use crate::solid::Piece;
 use crate::solid_answer::SolidOverlapping;
 use crate::solid_cast::SolidCast;
 use crate::solver::options_of;
@@ -27,6 +30,7 @@ fn run_query<'py, A: Answer<Query = Cast>>(
 #[pymethods]
 impl Cast {
     /// Computes the translation at which the bodies first meet; see :func:`cast`.
+    #[pyo3(name = "cast")]
     fn first_contact<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         run_query(slf, |cast| cast.first_contact())
     }
@@ -86,6 +90,11 @@ impl Pair {
         depth_of(slf)
     }
 
+    /// Checks whether the bodies meet; see :func:`intersects`.
+    fn intersects<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        intersects_of(slf)
+    }
+
     /// Checks whether the bodies are closer than a length; see :func:`within`.
     fn within<'py>(slf: &Bound<'py, Self>, length: f64) -> PyResult<Bound<'py, PyAny>> {
         within_of(slf, length)
@@ -95,6 +104,12 @@ impl Pair {
 /// These methods run without the interpreter's lock.
 #[pymethods]
 impl SolidCast {
+    /// Computes the translation at which the bodies first meet; see :func:`cast`.
+    #[pyo3(name = "cast")]
+    fn first_contact<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        Self::ask(slf, |cast| cast.first_contact())?.or_raise()?.object(slf)
+    }
+
     /// Computes how far the moving body can move from its pose, and what stops it.
     ///
     /// Returns
@@ -192,14 +207,20 @@ impl SolidCast {
     }
 }
 
-fn solids_meet<'py>(query: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>> {
-    if query.get().options.min_gap != 0.0 {
-        return Err(error(
-            "QueryError",
-            "intersects does not accept a gap for solids; call within(moving, fixed, length)",
-        ));
+/// Checks whether the bodies of a pair meet.
+fn intersects_of<'py>(pair: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyAny>> {
+    let (py, Pair { bodies, poses }) = (pair.py(), pair.get());
+    // The answers do not depend on the direction.
+    if let [Piece::Convex(moving), Piece::Convex(fixed)] = bodies {
+        let (moving, fixed) = (moving.clone_ref(py), fixed.clone_ref(py));
+        let (direction, options) = (DVec3::X, Options::default());
+        let query = Cast { moving, fixed, poses: *poses, direction, options };
+        return run_query(&Bound::new(py, query)?, |cast| cast.intersects());
     }
-    Ok(PyBool::new(query.py(), SolidCast::intersects(query)?).to_owned().into_any())
+    let bodies = [bodies[0].copy(py), bodies[1].copy(py)];
+    let (direction, options) = (DVec3::X, SolidOptions::default());
+    let query = Bound::new(py, SolidCast { bodies, poses: *poses, direction, options })?;
+    Ok(PyBool::new(py, SolidCast::intersects(&query)?).to_owned().into_any())
 }
 
 /// Defines a function for one question of convex bodies.
@@ -214,8 +235,8 @@ macro_rules! question {
         #[expect(clippy::too_many_arguments, reason = "they are keywords")]
         pub(crate) fn $name<'py>(
             py: Python<'py>,
-            moving: ConvexArgument<'py>,
-            fixed: ConvexArgument<'py>,
+            moving: &Bound<'py, PyAny>,
+            fixed: &Bound<'py, PyAny>,
             direction: &Bound<'py, PyAny>,
             moving_pose: Option<&Bound<'py, PyAny>>,
             fixed_pose: Option<&Bound<'py, PyAny>>,
@@ -224,12 +245,17 @@ macro_rules! question {
             solver: Option<&Bound<'py, PyAny>>,
         ) -> PyResult<Bound<'py, PyAny>> {
             let poses = [moving_pose, fixed_pose];
-            let (moving, fixed) = (&moving.0, &fixed.0);
             let asked =
                 Arguments { moving, fixed, direction, poses, graze_tolerance, min_gap, solver };
             run_query(&Bound::new(py, Cast::from_arguments(asked)?)?, |cast| cast.$ask())
         }
     };
+}
+
+/// Checks whether an argument is a convex body, placed or not.
+fn is_convex(given: &Bound<'_, PyAny>) -> bool {
+    given.is_instance_of::<ConvexPolyhedron>()
+        || given.cast::<Placed>().is_ok_and(|placed| matches!(placed.get().body, Piece::Convex(_)))
 }
 
 /// Defines a function for one question of bodies of both kinds.
@@ -257,7 +283,7 @@ macro_rules! question_of_any {
             ignore_start_overlaps: bool,
         ) -> PyResult<Bound<'py, PyAny>> {
             let poses = [moving_pose, fixed_pose];
-            if let (Ok(moving), Ok(fixed)) = (moving.cast(), fixed.cast()) {
+            if is_convex(moving) && is_convex(fixed) {
                 if tolerance.is_some() || ignore_start_overlaps {
                     return Err(error("QueryError", FOR_SOLIDS));
                 }
@@ -289,32 +315,37 @@ const FOR_SOLIDS: &str =
     "tolerance and ignore_start_overlaps are for solids; convex bodies have graze_tolerance";
 const FOR_CONVEX: &str = "graze_tolerance and solver are for convex bodies; solids have tolerance";
 
-question! {
+question_of_any! {
     /// Computes the translation along a direction at which two bodies first meet.
     ///
     /// Parameters
     /// ----------
-    /// moving, fixed : ConvexPolyhedron
-    ///     The moving and the fixed body.
+    /// moving, fixed : ConvexPolyhedron, Solid or Placed
+    ///     The moving and the fixed body. If one of them is a solid, both are treated as solids.
     /// direction : array_like of shape (3,)
     ///     A vector of the world, of any length. Translations are multiples of it.
     /// moving_pose, fixed_pose : array_like or Pose, optional
-    ///     Poses of the bodies in the world; see :class:`Pose`.
+    ///     Poses of the bodies in the world; see :class:`Pose`. A body may be given with its pose, as
+    ///     ``body.at(pose)``.
     /// graze_tolerance : float
-    ///     Lateral overlaps up to this length count as grazing. With 0 the limit follows from rounding
-    ///     errors.
+    ///     For convex bodies: lateral overlaps up to this length count as grazing. With 0 the limit follows
+    ///     from rounding errors.
     /// min_gap : float
     ///     A minimum gap, a length. With a gap the result is the translation at which the distance of the
     ///     bodies first falls to it.
     /// solver : {"auto", "cta", "portal"} or Cta
-    ///     The search algorithm. Answers are equally accurate; the normal and the features may differ if
-    ///     vertices or parallel edges meet.
+    ///     The search algorithm for convex bodies. Answers are equally accurate; the normal and the features may
+    ///     differ if vertices or parallel edges meet.
+    /// tolerance, ignore_start_overlaps
+    ///     See :class:`SolidCast`; only if one of the bodies is a solid. The second one has no effect here.
     ///
     /// Returns
     /// -------
     /// Contact or Grazing or Separated
     ///     If the translation is negative, the contact is behind the body, or the bodies overlap at the
     ///     start.
+    /// SolidContact or SolidFree
+    ///     The corresponding answers if one of the bodies is a solid. Solids do not graze.
     ///
     /// Raises
     /// ------
@@ -333,7 +364,7 @@ question! {
     /// ...     case Separated(margin=margin):
     /// ...         print("misses by", margin)
     /// 2.0 [1. 0. 0.]
-    cast => first_contact
+    cast => first_contact, SolidCast::first_contact
 }
 
 question! {
@@ -420,32 +451,38 @@ question! {
     directional_depth => directional_depth
 }
 
-question_of_any! {
-    /// Checks whether the bodies, as closed sets and up to rounding error, meet at their poses.
-    ///
-    /// Parameters
-    /// ----------
-    /// moving, fixed : ConvexPolyhedron or Solid
-    /// direction, moving_pose, fixed_pose, graze_tolerance, solver, tolerance, ignore_start_overlaps
-    ///     See :func:`clearance`. The answer does not depend on the direction and the tolerances.
-    /// min_gap : float
-    ///     For convex bodies a gap, a length: checks whether their distance is at most the gap. For solids
-    ///     call :func:`within`.
-    ///
-    /// Returns
-    /// -------
-    /// Intersection
-    ///     Converts to a bool, and has the proof.
-    /// bool
-    ///     The result if one of the bodies is a solid.
-    ///
-    /// Examples
-    /// --------
-    /// >>> from colltrans import ConvexPolyhedron, intersects
-    /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
-    /// >>> bool(intersects(cube, cube, [1, 0, 0], moving_pose=[0.5, 0, 0]))
-    /// True
-    intersects => intersects, solids_meet
+/// Checks whether two bodies, as closed sets, meet at fixed poses.
+///
+/// The answer is exact for solids, and up to rounding error for convex bodies.
+///
+/// Parameters
+/// ----------
+/// moving, fixed, moving_pose, fixed_pose
+///     See :func:`distance`.
+///
+/// Returns
+/// -------
+/// Intersection
+///     Converts to a bool, and has the proof.
+/// bool
+///     The result if one of the bodies is a solid.
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron, intersects
+/// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+/// >>> bool(intersects(cube, cube, moving_pose=[0.5, 0, 0]))
+/// True
+#[pyfunction]
+#[pyo3(signature = (moving, fixed, *, moving_pose=None, fixed_pose=None))]
+pub(crate) fn intersects<'py>(
+    py: Python<'py>,
+    moving: &Bound<'py, PyAny>,
+    fixed: &Bound<'py, PyAny>,
+    moving_pose: Option<&Bound<'py, PyAny>>,
+    fixed_pose: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    intersects_of(&Bound::new(py, Pair::from_arguments(moving, fixed, [moving_pose, fixed_pose])?)?)
 }
 
 /// Computes the distance of two bodies at fixed poses, and their nearest points.

@@ -26,6 +26,7 @@ use crate::errors::{OrRaise, error, input_error};
 use crate::frozen::{
     Options, Reduced, Shown, getters, match_args, plain, read, reduced, show, written,
 };
+use crate::number::{middle, number};
 use crate::solid::Piece;
 
 /// Time between two polls for signals.
@@ -362,7 +363,7 @@ fn run_interruptible<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -
 /// - ``"overlapping"``: two bodies overlap at the start of the path;
 /// - ``"undecided"``: the search for ``pair`` reached its maximum number of steps. No two meet before
 ///   ``lower``; later contacts of these two are open.
-#[pyclass(frozen, module = "colltrans", name = "PathContact")]
+#[pyclass(frozen, module = "colltrans.robots", name = "PathContact")]
 pub(crate) struct PathAnswer {
     question: Question,
     /// The end of the path, and the index of its last row.
@@ -459,15 +460,23 @@ impl PathAnswer {
     }
 }
 
+number!(PathAnswer, Option<f64>, |it| match it.found {
+        PathOutcome::Undecided(_) => None,
+        PathOutcome::Free(_) => Some(f64::INFINITY),
+        _ => Some(middle(it.lower(), it.upper())),
+    },
+    /// float or None: The time of the first contact: the middle of both bounds, or ``lower`` without a finite ``upper``.
+    /// Infinite if no bodies meet. None if the answer is undecided, for which ``float`` raises a TypeError.
+);
+
 getters!(PathAnswer, |it| {
     /// str: ``"contact"``, ``"grazing"``, ``"free"``, ``"overlapping"`` or ``"undecided"``.
     outcome: &'static str = it.record.outcome.name();
     /// float: No two bodies meet before this time: the end of the path if none meet, its start if two overlap
     /// there.
     lower: f64 = it.contact().map_or(it.end.0, |contact| contact.lower);
-    /// float or None: Two bodies meet at this time; None if that is not proven, or if none meet.
-    upper: Option<f64> =
-        it.contact().map(|contact| contact.upper).filter(|upper| upper.is_finite());
+    /// float: Two bodies meet at this time; infinite if that is not proven, or if none meet.
+    upper: f64 = it.contact().map_or(f64::INFINITY, |contact| contact.upper);
     /// tuple of (str, str) or None: The two bodies, links or scene bodies.
     pair: Option<(&str, &str)> = it.record.pair.as_ref().map(|[a, b]| (a.as_str(), b.as_str()));
     /// tuple of (int, float) or None: The position of ``lower`` on the path: the row before it, and the
@@ -645,30 +654,32 @@ impl PathAnswer {
     }
 
     fn __repr__(&self) -> String {
-        let upper = self.upper().map_or_else(|| "None".into(), |upper| format!("{upper:?}"));
+        let upper = self.upper();
         let pair = self.pair().map(|(a, b)| format!(", {a:?} and {b:?}")).unwrap_or_default();
         let notes = self.record.notes.iter().map(String::as_str);
         let only = std::iter::once("").chain(notes).collect::<Vec<_>>().join(", only ");
         let (outcome, lower) = (self.outcome(), self.lower());
-        format!("PathContact({outcome:?}, lower={lower:?}, upper={upper}{pair}{only})")
+        format!("PathContact({outcome:?}, lower={lower:?}, upper={upper:?}{pair}{only})")
     }
 }
 
-/// Writes an answer to the columns.
-fn write_row(row: &mut Row<'_>, outcome: &PathOutcome) {
+/// Writes an answer to the columns. `end` is the time of the end of the path.
+fn write_row(row: &mut Row<'_>, outcome: &PathOutcome, end: f64) {
     let (code, of) = match outcome {
         PathOutcome::Contact(of) => (0, of),
         PathOutcome::Grazing(of) => (1, of),
         PathOutcome::Overlapping(of) => (3, of),
         PathOutcome::Undecided(of) => (4, of),
         _ => {
-            row.set_outcome(2);
+            row.set_outcome(2)
+                .set_number(columns::AT_LEAST, end)
+                .set_number(columns::AT_MOST, f64::INFINITY);
             return;
         }
     };
     row.set_outcome(code)
         .set_number(columns::AT_LEAST, of.lower)
-        .set_number(columns::AT_MOST, if of.upper.is_finite() { of.upper } else { f64::NAN })
+        .set_number(columns::AT_MOST, of.upper)
         .set_number(columns::ROW, of.place.row as f64)
         .set_number(columns::SHARE, of.place.share)
         .set_number(columns::FIRST, of.pair[0] as f64)
@@ -709,7 +720,7 @@ pub(crate) fn ask_paths<'py>(
     };
     let answered = plan.run(py, |k, row| {
         let (path, _) = asked.path(&rows[k])?;
-        asked.first_contact(&path).map(|(found, _)| write_row(row, &found))
+        asked.first_contact(&path).map(|(found, _)| write_row(row, &found, end_of(&path).0))
     })?;
     Ok((answered, asked.cell.names().to_vec()))
 }

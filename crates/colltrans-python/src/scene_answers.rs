@@ -12,6 +12,7 @@ use crate::answer::save;
 use crate::arrays::{Vector, row};
 use crate::errors::OrRaise;
 use crate::frozen::getters;
+use crate::number::{middle, number};
 use crate::scene::{SceneRequest, with_min_gap};
 
 /// Defines the methods for the proof, which all answers share.
@@ -63,7 +64,7 @@ macro_rules! proven {
 }
 
 /// The nearest of many obstacles.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.scenes")]
 pub(crate) struct NearestObstacle {
     pub(crate) found: colltrans::Nearest,
     pub(crate) asked: SceneRequest,
@@ -93,6 +94,10 @@ getters!(NearestObstacle, |it| {
     normal(py): Option<Vector<'py>> = it.found.distance.normal().map(|normal| row(py, normal));
 });
 
+number!(NearestObstacle, f64, |it| middle(it.found.lower, it.found.distance.upper()),
+    /// float: The middle of both bounds.
+);
+
 #[pymethods]
 impl NearestObstacle {
     fn __repr__(&self) -> String {
@@ -102,7 +107,7 @@ impl NearestObstacle {
 }
 
 /// The obstacles that are at most a length away. It unpacks into both lists.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.scenes")]
 pub(crate) struct NearbyObstacles {
     pub(crate) found: Nearby,
     pub(crate) length: f64,
@@ -156,7 +161,7 @@ impl NearbyObstacles {
 }
 
 /// How far a body can move among obstacles, and the obstacle that stops it.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.scenes")]
 pub(crate) struct ObstacleClearance {
     pub(crate) found: SceneClearance,
     pub(crate) direction: DVec3,
@@ -204,6 +209,8 @@ getters!(ObstacleClearance, |it| {
     /// direction. If nothing stops it, this is infinite, or at most the end of the query, ``before``. None if the
     /// body overlaps an obstacle at the start.
     distance: Option<f64> = it.found.safe_translation();
+    /// float or None: The :attr:`distance`, which is proven.
+    lower: Option<f64> = it.found.safe_translation();
     /// float: An upper bound of the translation at which the body is stopped; infinite if nothing stops it,
     /// NaN if it overlaps an obstacle.
     upper: f64 = upper_of(&it.found);
@@ -219,6 +226,10 @@ getters!(ObstacleClearance, |it| {
         _ => None,
     };
 });
+
+number!(ObstacleClearance, Option<f64>, |it| it.found.safe_translation(),
+    /// float or None: The free travel, :attr:`distance`. ``float`` raises a TypeError if it is None.
+);
 
 #[pymethods]
 impl ObstacleClearance {

@@ -16,12 +16,13 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arguments::{loader_hint, refuse_mesh};
-use crate::arrays::{self, Indices, faces, ids, points, read_only, table};
+use crate::arguments::{loader_hint, mesh_parts, refuse_file};
+use crate::arrays::{Indices, faces, ids, points, read_only, table};
 use crate::body::ConvexPolyhedron;
 use crate::errors::{OrRaise, input_error};
 use crate::frozen::{Options, Shown, getters, html, show};
 use crate::offset::ShrinkReport;
+use crate::placed::{Placed, place};
 
 /// The source of a solid.
 enum Source {
@@ -54,6 +55,16 @@ impl Piece {
             loader_hint(thing)?
         );
         Err(PyTypeError::new_err(message))
+    }
+
+    /// Reads the body of the argument called `name`, and its pose.
+    pub(crate) fn placed(
+        thing: &Bound<'_, PyAny>,
+        pose: Option<&Bound<'_, PyAny>>,
+        name: &str,
+    ) -> PyResult<(Self, colltrans::Pose)> {
+        let (body, pose) = place(thing, pose, name)?;
+        Ok((Self::from_python(&body, name)?, pose))
     }
 
     /// Returns the depth of the body's dent; `None` for a convex mesh or a solid.
@@ -124,40 +135,32 @@ impl Piece {
     }
 }
 
-/// An argument that must be a convex body. The error message names the functions that accept the given
-/// object.
-pub(crate) struct ConvexArgument<'py>(pub(crate) Bound<'py, ConvexPolyhedron>);
-
-impl<'py> FromPyObject<'_, 'py> for ConvexArgument<'py> {
-    type Error = PyErr;
-
-    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        if let Ok(body) = given.cast::<ConvexPolyhedron>() {
-            return Ok(Self((*body).clone()));
-        }
-        let message = if given.is_instance_of::<Solid>() {
-            "Solid is not a ConvexPolyhedron; clearance(moving, fixed, direction) and \
-             distance(moving, fixed) take solids"
-                .into()
-        } else {
-            format!(
-                "{} is not a ConvexPolyhedron; {}",
-                given.get_type().name()?,
-                loader_hint(&given)?
-            )
-        };
-        Err(PyTypeError::new_err(message))
+/// Reads an argument that must be a convex body. The error message names the calls that accept the given object.
+pub(crate) fn convex_body<'py>(
+    given: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, ConvexPolyhedron>> {
+    if let Ok(body) = given.cast::<ConvexPolyhedron>() {
+        return Ok(body.clone());
     }
+    let message = if given.is_instance_of::<Solid>() {
+        "Solid is not a ConvexPolyhedron; SolidCast(moving, fixed, direction) is the query of solids, and cast, \
+         clearance, distance, depth, within, intersects and motion take them"
+            .into()
+    } else {
+        format!("{} is not a ConvexPolyhedron; {}", given.get_type().name()?, loader_hint(given)?)
+    };
+    Err(PyTypeError::new_err(message))
 }
 
 /// A part that need not be convex: a closed surface of polygons, with exact decisions.
 ///
 /// Parameters
 /// ----------
-/// vertices : array_like of shape (N, 3)
-///     Coordinates in the body frame, in any unit. Vertices with equal coordinates are merged.
+/// vertices : array_like of shape (N, 3), or mesh
+///     Coordinates in the body frame, in any unit. Vertices with equal coordinates are merged. A mesh is an object
+///     with ``vertices`` and ``faces`` or ``triangles``, such as those of trimesh and open3d, or a ConvexPolyhedron.
 /// faces : array_like of shape (M, k), or a sequence of sequences
-///     Vertex indices, counter-clockwise as seen from outside.
+///     Vertex indices, counter-clockwise as seen from outside. They are not given for a mesh.
 /// open : bool
 ///     Whether the surface may be open, like a scan. An open surface blocks and is blocked, but it has no
 ///     interior.
@@ -247,10 +250,10 @@ getters!(Solid, |it| {
     radius: f64 = it.solid.radius();
     /// float: The volume, in the cube of the unit of length, without the radius of a rounded solid.
     volume: f64 = it.solid.volume();
-    /// ndarray of shape (2, 3): Smallest and largest coordinates of the vertices.
+    /// ndarray of shape (2, 3): Smallest and largest coordinates of the body, with its radius if it is rounded.
     bounds(py): PyResult<Bound<'py, PyArray2<f64>>> = {
-        let bounds = it.solid.bounds();
-        table(py, [bounds.low, bounds.high].map(|v| v.to_array()))
+        let (bounds, radius) = (it.solid.bounds(), it.solid.radius());
+        table(py, [bounds.low - radius, bounds.high + radius].map(|v| v.to_array())).map(read_only)
     };
     /// int: Bytes of memory that the body occupies, without its source.
     nbytes: usize = it.solid.memory_bytes();
@@ -266,7 +269,10 @@ impl Solid {
         faces: Option<&Bound<'_, PyAny>>,
         open: bool,
     ) -> PyResult<Self> {
-        refuse_mesh(vertices, "vertices", "Solid", "Solid.from_trimesh(mesh)")?;
+        refuse_file(vertices, "vertices", "Solid")?;
+        if let (None, Some([vertices, faces])) = (faces, mesh_parts(vertices)?) {
+            return Self::new(py, &vertices, Some(&faces), open);
+        }
         let Some(faces) = faces else {
             let what = "they are missing; ConvexPolyhedron(points) makes the hull of points alone";
             return Err(input_error("faces", what));
@@ -307,19 +313,20 @@ impl Solid {
         Ok(Self { solid, precision, notes, source: Arc::new(Source::Pieces(pieces)) })
     }
 
-    /// Builds a solid from an object with ``vertices`` and ``faces``, such as a trimesh mesh.
+    /// Places the body in the world.
     ///
     /// Parameters
     /// ----------
-    /// mesh : object
+    /// pose : array_like or Pose, optional
+    ///     See :class:`Pose`.
     ///
     /// Returns
     /// -------
-    /// Solid
-    #[staticmethod]
-    fn from_trimesh(py: Python<'_>, mesh: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let [vertices, faces] = arrays::mesh(mesh)?;
-        Self::new(py, &vertices, Some(&faces), false)
+    /// Placed
+    #[pyo3(signature = (pose=None))]
+    fn at(slf: &Bound<'_, Self>, pose: Option<&Bound<'_, PyAny>>) -> PyResult<Placed> {
+        let pose = crate::pose::pose(pose, "pose")?;
+        Ok(Placed { body: Piece::Solid(slf.clone().unbind()), pose })
     }
 
     /// Reads a part from a mesh file: STL, OBJ, PLY, OFF or COLLADA.

@@ -8,15 +8,20 @@ use pyo3::prelude::*;
 
 use crate::answer::{Answer, answer, object};
 use crate::arrays::{Vector, coordinates, row};
-use crate::errors::OrRaise;
+use crate::errors::{OrRaise, error};
 use crate::features::Feature;
 use crate::frozen::getters;
+use crate::number::number;
 use crate::solid::Piece;
 use crate::solid_cast::SolidCast;
 
 type SolidClearance = Clearance<colltrans::Solid>;
+type SolidOutcome = colltrans::Outcome<colltrans::Solid>;
 
-/// The contact that stops a solid.
+/// The contact that stops a solid, or the first contact of a cast.
+///
+/// :meth:`to_dict` and the proof are those of the clearance: the travel from the pose of the moving body. They say
+/// nothing about negative translations, and a contact behind the pose has neither: both raise a CaseError.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidContact {
     contact: colltrans::solid::SolidContact,
@@ -33,6 +38,10 @@ getters!(SolidContact, |it| {
     /// not overlap and these two faces have not met. Beyond the second one the nominal bodies overlap, or the
     /// shrunk bodies if the nominal faces pass each other.
     translation_bounds: (f64, f64) = it.contact.translation.bounds().into();
+    /// float: The first of :attr:`translation_bounds`.
+    lower: f64 = it.contact.translation.lower;
+    /// float: The second of :attr:`translation_bounds`.
+    upper: f64 = it.contact.translation.upper;
     /// float: The free travel of the bodies shrunk by half the tolerance each, in multiples of the direction.
     offset_distance: f64 = it.contact.offset_distance.value;
     /// tuple of (float, float): Proven bounds of the free travel of the shrunk bodies.
@@ -50,6 +59,10 @@ getters!(SolidContact, |it| {
     /// Feature: The feature of the fixed body in contact.
     fixed_feature: PyResult<Feature> = convert_feature(it.contact.fixed_feature, &it.query.get().bodies[1]);
 });
+
+number!(SolidContact, f64, |it| it.contact.translation.value,
+    /// float: The :attr:`translation`.
+);
 
 #[pymethods]
 impl SolidContact {
@@ -79,12 +92,20 @@ getters!(SolidBlocked, |it| {
     /// float: The free travel in multiples of the direction: the lower bound of the stopping translation,
     /// never negative.
     distance: f64 = it.distance;
+    /// float: The :attr:`distance`, which is proven: the shrunk bodies do not overlap up to it.
+    lower: f64 = it.distance;
+    /// float: A proven upper bound of the translation of the contact that stops the body.
+    upper: f64 = it.contact.translation.upper.max(0.0);
     /// SolidContact: The contact that stops the body.
     contact(py): SolidContact = SolidContact { contact: it.contact, query: it.query(py) };
     /// list of str: The bodies, ``moving`` or ``fixed``, that are open surfaces at least in part; their
     /// interior is not known.
     surfaces: PyResult<Vec<&'static str>> = surface_names(&it.query);
 });
+
+number!(SolidBlocked, f64, |it| it.distance,
+    /// float: The free travel, :attr:`distance`.
+);
 
 #[pymethods]
 impl SolidBlocked {
@@ -94,6 +115,9 @@ impl SolidBlocked {
 }
 
 /// A solid can move without a limit.
+///
+/// As the answer of :func:`cast` it also states that the bodies do not meet at negative translations. The proof is that
+/// of the clearance, which does not cover these.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct SolidFree {
     free: colltrans::solid::SolidFree,
@@ -105,6 +129,10 @@ answer!(SolidFree() of SolidClearance, SolidCast, |it| SolidClearance::Free(it.f
 getters!(SolidFree, |it| {
     /// float: Infinite.
     distance: f64 = f64::INFINITY;
+    /// float: Infinite.
+    lower: f64 = f64::INFINITY;
+    /// float: Infinite.
+    upper: f64 = f64::INFINITY;
     /// float or None: The margin of a plane between the bodies, parallel to the direction, a length; None if
     /// no such plane was found, for example because the body slides along the other one, moves away from it, or
     /// passes through a hole.
@@ -115,6 +143,10 @@ getters!(SolidFree, |it| {
     /// interior is not known.
     surfaces: PyResult<Vec<&'static str>> = surface_names(&it.query);
 });
+
+number!(SolidFree, f64, |_| f64::INFINITY,
+    /// float: Infinite, because nothing blocks.
+);
 
 #[pymethods]
 impl SolidFree {
@@ -135,6 +167,10 @@ answer!(SolidOverlapping("least_tolerance") of SolidClearance, SolidCast, |it| S
 getters!(SolidOverlapping, |it| {
     /// None: An overlap has no clearance.
     distance: Option<f64> = None;
+    /// None: An overlap has no clearance.
+    lower: Option<f64> = None;
+    /// None: An overlap has no clearance.
+    upper: Option<f64> = None;
     /// float or None: The smallest tolerance at which the solids would not overlap, a length, rounded up; None if
     /// there is no such tolerance, as for open surfaces.
     least_tolerance: Option<f64> = it.overlap.least_tolerance;
@@ -157,6 +193,10 @@ getters!(SolidOverlapping, |it| {
     surfaces: PyResult<Vec<&'static str>> = surface_names(&it.query);
 });
 
+number!(SolidOverlapping, Option<f64>, |_| None,
+    /// None: An overlap has no free travel. ``float`` raises a TypeError.
+);
+
 #[pymethods]
 impl SolidOverlapping {
     fn __repr__(&self) -> String {
@@ -175,6 +215,15 @@ fn surface_names(query: &Py<SolidCast>) -> PyResult<Vec<&'static str>> {
         }
     }
     Ok(found)
+}
+
+/// Rejects a contact of a cast that lies behind the start: records and proofs are those of clearances.
+fn refuse_behind(contact: &colltrans::solid::SolidContact) -> PyResult<()> {
+    if contact.translation.upper < 0.0 {
+        let what = "a contact behind the start has no record and no proof; call clearance()";
+        return Err(error("CaseError", what));
+    }
+    Ok(())
 }
 
 /// Builds the proof of a clearance, which depends on the query alone.
@@ -224,6 +273,30 @@ impl Answer for SolidClearance {
     }
 }
 
+impl Answer for SolidOutcome {
+    type Query = SolidCast;
+
+    fn object<'py>(self, query: &Bound<'py, SolidCast>) -> PyResult<Bound<'py, PyAny>> {
+        match self {
+            Self::Contact(contact) => contact.object(query),
+            Self::Grazing(never) => match never {},
+            Self::Separated(free) => SolidClearance::Free(free).object(query),
+        }
+    }
+
+    fn record(&self, query: &Bound<'_, SolidCast>) -> PyResult<Record> {
+        match self {
+            Self::Contact(contact) => contact.record(query),
+            Self::Grazing(never) => match *never {},
+            Self::Separated(free) => SolidClearance::Free(*free).record(query),
+        }
+    }
+
+    fn proof(&self, query: &Bound<'_, SolidCast>) -> PyResult<String> {
+        proof(query)
+    }
+}
+
 impl Answer for colltrans::solid::SolidContact {
     type Query = SolidCast;
 
@@ -232,11 +305,13 @@ impl Answer for colltrans::solid::SolidContact {
     }
 
     fn record(&self, query: &Bound<'_, SolidCast>) -> PyResult<Record> {
+        refuse_behind(self)?;
         let distance = self.translation.lower.max(0.0);
         SolidClearance::Blocked { distance, contact: *self }.record(query)
     }
 
     fn proof(&self, query: &Bound<'_, SolidCast>) -> PyResult<String> {
+        refuse_behind(self)?;
         proof(query)
     }
 }

@@ -17,7 +17,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{Vector, coordinates, row, vector};
 use crate::errors::{OrRaise, error};
 use crate::frozen::{Options, Shown, getters, html, show};
-use crate::pose::{Pose, pose};
+use crate::pose::Pose;
 use crate::solid::Piece;
 
 /// A query about solids, as a value: two placed bodies and a direction.
@@ -186,9 +186,11 @@ impl SolidCast {
     ) -> PyResult<Self> {
         let start_overlap =
             if ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
+        let (moving, moving_pose) = Piece::placed(moving, moving_pose, "moving")?;
+        let (fixed, fixed_pose) = Piece::placed(fixed, fixed_pose, "fixed")?;
         let cast = Self {
-            bodies: [Piece::from_python(moving, "moving")?, Piece::from_python(fixed, "fixed")?],
-            poses: [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?],
+            bodies: [moving, fixed],
+            poses: [moving_pose, fixed_pose],
             direction: vector(direction, "direction")?,
             options: SolidOptions::default()
                 .with_tolerance(tolerance)

@@ -12,7 +12,6 @@ use crate::body::ConvexPolyhedron;
 use crate::errors::error;
 use crate::features::Steps;
 use crate::query::{Arguments, Cast};
-use crate::solid::ConvexArgument;
 
 type Bodies = [Py<ConvexPolyhedron>; 2];
 type Borrowing<'a> = colltrans::Tracker<'a>;
@@ -168,8 +167,8 @@ macro_rules! questions {
                 fn $name<'py>(
                     &mut self,
                     py: Python<'py>,
-                    moving: ConvexArgument<'py>,
-                    fixed: ConvexArgument<'py>,
+                    moving: &Bound<'py, PyAny>,
+                    fixed: &Bound<'py, PyAny>,
                     direction: &Bound<'py, PyAny>,
                     moving_pose: Option<&Bound<'py, PyAny>>,
                     fixed_pose: Option<&Bound<'py, PyAny>>,
@@ -179,8 +178,8 @@ macro_rules! questions {
                 ) -> PyResult<Bound<'py, PyAny>> {
                     let poses = [moving_pose, fixed_pose];
                     let arguments = Arguments {
-                        moving: &moving.0,
-                        fixed: &fixed.0,
+                        moving,
+                        fixed,
                         direction,
                         poses,
                         graze_tolerance,

@@ -8,12 +8,12 @@ use crate::arrays::points;
 use crate::directions::place_bodies;
 use crate::errors::{OrRaise, error};
 use crate::frozen::{getters, plain};
-use crate::pose::{Pose, pose};
+use crate::pose::Pose;
 use crate::solid::Piece;
 use crate::solid_cast::{placed_bodies, run_patiently};
 
 /// A sequence of moves by which one body leaves another; see :func:`ways_out`.
-#[pyclass(frozen, module = "colltrans")]
+#[pyclass(frozen, module = "colltrans.removal")]
 pub(crate) struct WaysOut {
     bodies: [Piece; 2],
     poses: [colltrans::Pose; 2],
@@ -115,7 +115,8 @@ impl WaysOut {
 ///
 /// Examples
 /// --------
-/// >>> from colltrans import ConvexPolyhedron, ways_out
+/// >>> from colltrans import ConvexPolyhedron
+/// >>> from colltrans.removal import ways_out
 /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 /// >>> way = ways_out(cube, cube, moving_pose=[0, 0, 2])
 /// >>> way.outcome, len(way.legs)
@@ -140,8 +141,9 @@ pub(crate) fn ways_out(
     if legs == 0 {
         return Err(error("InputError", "legs: 0 is out of range; accepted: at least 1"));
     }
-    let bodies = [Piece::from_python(moving, "moving")?, Piece::from_python(fixed, "fixed")?];
-    let poses = [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?];
+    let (moving, moving_pose) = Piece::placed(moving, moving_pose, "moving")?;
+    let (fixed, fixed_pose) = Piece::placed(fixed, fixed_pose, "fixed")?;
+    let (bodies, poses) = ([moving, fixed], [moving_pose, fixed_pose]);
     let directions = directions.map_or_else(|| Ok(Vec::new()), |all| points(all, "directions"))?;
     let options = RemovalOptions::default()
         .with_tolerance(tolerance)

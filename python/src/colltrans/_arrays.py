@@ -81,6 +81,9 @@ def faces(values: Any) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
         corners = indices(values, "faces")
         ends = np.arange(len(values) + 1) * values.shape[1]
         return corners.reshape(-1), ends.astype(np.uint32)
+    if not isinstance(values, (Sequence, np.ndarray)) and hasattr(values, "__len__"):
+        # Vectors of open3d are neither arrays nor sequences of Python.
+        return faces(np.asarray(values))
     if not isinstance(values, (Sequence, np.ndarray)):
         raise InputError(f"faces: not a list of faces, but {type(values).__name__}")
     each = [indices(face, f"face {number}") for number, face in enumerate(values)]

@@ -2,15 +2,30 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from os import PathLike
-from typing import Any, Final, Literal, Never, Protocol, TypeAlias, final, overload, type_check_only
+from typing import (
+    Any,
+    Final,
+    Literal,
+    Never,
+    Protocol,
+    SupportsFloat,
+    TypeAlias,
+    final,
+    overload,
+    type_check_only,
+)
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from colltrans.scenes import NearestColumns, ObstacleClearanceColumns
+
 _Floats: TypeAlias = NDArray[np.float64]
 _Indices: TypeAlias = NDArray[np.uint32]
 _Solver: TypeAlias = Literal["auto", "cta", "portal"] | Cta
-_Pose: TypeAlias = ArrayLike | Pose | HasMatrix | None
+_Pose: TypeAlias = ArrayLike | Pose | HasMatrix | tuple[ArrayLike, ArrayLike] | None
+_Poses: TypeAlias = _Pose | Sequence[Any]
+_Body: TypeAlias = ConvexPolyhedron | Solid | Placed
 _Faces: TypeAlias = NDArray[np.integer[Any]] | Sequence[Sequence[int] | NDArray[np.integer[Any]]]
 _Outcome: TypeAlias = Contact | Grazing | Separated
 _Clearance: TypeAlias = Blocked | Slides | Behind | Separated | Overlapping
@@ -47,6 +62,7 @@ __all__ = [
     "Overlapping",
     "Pair",
     "PathContact",
+    "Placed",
     "Planned",
     "Pose",
     "Robot",
@@ -73,15 +89,16 @@ __all__ = [
     "depth",
     "directional_depth",
     "distance",
-    "first_contact",
     "free_directions",
     "intersects",
+    "motion",
     "motion_clearance",
     "read",
     "ways_out",
     "within",
 ]
 _Answered: TypeAlias = tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]
+_SolidOutcome: TypeAlias = SolidContact | SolidFree
 _SolidClearance: TypeAlias = SolidBlocked | SolidFree | SolidOverlapping
 
 @type_check_only
@@ -107,15 +124,52 @@ class Pose:
     def __ne__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, Any]: ...
 
+@type_check_only
+class HasFaces(Protocol):
+    """A mesh of another package, trimesh's for one."""
+
+    @property
+    def vertices(self) -> Any: ...
+    @property
+    def faces(self) -> Any: ...
+
+@type_check_only
+class HasTriangles(Protocol):
+    """A mesh of another package, open3d's for one."""
+
+    @property
+    def vertices(self) -> Any: ...
+    @property
+    def triangles(self) -> Any: ...
+
+_Mesh: TypeAlias = HasFaces | HasTriangles
+
+@final
+class Placed:
+    def __new__(cls, body: _Body, pose: _Pose = None) -> Placed: ...
+    @property
+    def body(self) -> ConvexPolyhedron | Solid: ...
+    @property
+    def pose(self) -> Pose: ...
+    def __getnewargs__(self) -> tuple[Any, Pose]: ...
+
 @final
 class ConvexPolyhedron:
-    def __new__(cls, points: ArrayLike) -> ConvexPolyhedron: ...
+    def __new__(cls, points: ArrayLike | _Mesh) -> ConvexPolyhedron: ...
     @staticmethod
     def from_mesh(
-        vertices: ArrayLike, faces: _Faces, convex_tolerance: float = 0.0
+        vertices: ArrayLike | _Mesh, faces: _Faces | None = None, convex_tolerance: float = 0.0
     ) -> ConvexPolyhedron: ...
     @staticmethod
-    def from_trimesh(mesh: Any, convex_tolerance: float = 0.0) -> ConvexPolyhedron: ...
+    def read(
+        path: str | PathLike[str],
+        *,
+        hull: bool = False,
+        scale: float = 1.0,
+        convex_tolerance: float | None = None,
+        merge_tolerance: float | None = None,
+    ) -> ConvexPolyhedron: ...
+    def at(self, pose: _Pose = None) -> Placed: ...
     @staticmethod
     def cuboid(low: ArrayLike, high: ArrayLike) -> ConvexPolyhedron: ...
     @staticmethod
@@ -135,6 +189,10 @@ class ConvexPolyhedron:
     def input_indices(self) -> _Indices: ...
     @property
     def faces(self) -> list[_Indices]: ...
+    @property
+    def triangles(self) -> _Indices: ...
+    @property
+    def bounds(self) -> _Floats: ...
     def face_normal(self, face: int) -> _Floats: ...
     @property
     def dimension(self) -> int: ...
@@ -297,8 +355,8 @@ class Planned:
 class Cast:
     def __new__(
         cls,
-        moving: ConvexPolyhedron,
-        fixed: ConvexPolyhedron,
+        moving: ConvexPolyhedron | Placed,
+        fixed: ConvexPolyhedron | Placed,
         direction: ArrayLike,
         *,
         moving_pose: _Pose = None,
@@ -307,7 +365,7 @@ class Cast:
         min_gap: float = 0.0,
         solver: _Solver = "auto",
     ) -> Cast: ...
-    def first_contact(self) -> _Outcome: ...
+    def cast(self) -> _Outcome: ...
     def contact_range(self) -> ContactRange | Separated: ...
     def clearance(self) -> _Clearance: ...
     def directional_depth(self) -> DirectionalDepth: ...
@@ -411,6 +469,51 @@ class _Answer:
     def __reduce__(self) -> tuple[Any, Any]: ...
 
 @type_check_only
+class _Comparable:
+    def __float__(self) -> float: ...
+    def __lt__(self, other: SupportsFloat, /) -> bool: ...
+    def __le__(self, other: SupportsFloat, /) -> bool: ...
+    def __gt__(self, other: SupportsFloat, /) -> bool: ...
+    def __ge__(self, other: SupportsFloat, /) -> bool: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+@type_check_only
+class _Number(_Comparable):
+    @property
+    def value(self) -> float: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+
+@type_check_only
+class _NoNumber(_Comparable):
+    @property
+    def value(self) -> None: ...
+    @property
+    def lower(self) -> None: ...
+    @property
+    def upper(self) -> None: ...
+
+@type_check_only
+class _Time(_Comparable):
+    @property
+    def value(self) -> float | None: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+
+@type_check_only
+class _Travel(_Comparable):
+    @property
+    def value(self) -> float | None: ...
+    @property
+    def lower(self) -> float | None: ...
+
+@type_check_only
 class _ConvexAnswer(_Answer):
     @property
     def query(self) -> Cast: ...
@@ -421,7 +524,7 @@ class _SolidAnswer(_Answer):
     def query(self) -> SolidCast: ...
 
 @final
-class Contact(_ConvexAnswer):
+class Contact(_ConvexAnswer, _Number):
     __match_args__: Final = ("translation", "normal", "point")
     @property
     def translation(self) -> float: ...
@@ -443,7 +546,7 @@ class Contact(_ConvexAnswer):
     def steps(self) -> Steps: ...
 
 @final
-class Grazing(_ConvexAnswer):
+class Grazing(_ConvexAnswer, _Number):
     __match_args__: Final = ("overlap", "contact")
     @property
     def overlap(self) -> float: ...
@@ -453,7 +556,7 @@ class Grazing(_ConvexAnswer):
     def contact(self) -> Contact: ...
 
 @final
-class Separated(_ConvexAnswer):
+class Separated(_ConvexAnswer, _Number):
     __match_args__: Final = ("margin", "normal")
     @property
     def margin(self) -> float: ...
@@ -469,7 +572,7 @@ class Separated(_ConvexAnswer):
     def steps(self) -> Steps: ...
 
 @final
-class ContactRange(_ConvexAnswer):
+class ContactRange(_ConvexAnswer, _Number):
     __match_args__: Final = ("interval",)
     @property
     def interval(self) -> tuple[float, float]: ...
@@ -479,12 +582,10 @@ class ContactRange(_ConvexAnswer):
     def last(self) -> LastContact: ...
 
 @final
-class LastContact:
+class LastContact(_Number):
     __match_args__: Final = ("translation", "normal", "point")
     @property
     def translation(self) -> float: ...
-    @property
-    def bounds(self) -> tuple[float, float]: ...
     @property
     def normal(self) -> _Floats: ...
     @property
@@ -498,7 +599,7 @@ class LastContact:
     def __reduce__(self) -> tuple[Any, Any]: ...
 
 @final
-class Blocked(_ConvexAnswer):
+class Blocked(_ConvexAnswer, _Number):
     __match_args__: Final = ("distance", "contact")
     @property
     def distance(self) -> float: ...
@@ -506,7 +607,7 @@ class Blocked(_ConvexAnswer):
     def contact(self) -> Contact: ...
 
 @final
-class Slides(_ConvexAnswer):
+class Slides(_ConvexAnswer, _Number):
     __match_args__: Final = ("grazing",)
     @property
     def distance(self) -> float: ...
@@ -514,7 +615,7 @@ class Slides(_ConvexAnswer):
     def grazing(self) -> Grazing: ...
 
 @final
-class Behind(_ConvexAnswer):
+class Behind(_ConvexAnswer, _Number):
     __match_args__: Final = ("contact",)
     @property
     def distance(self) -> float: ...
@@ -522,7 +623,7 @@ class Behind(_ConvexAnswer):
     def contact(self) -> Contact: ...
 
 @final
-class Overlapping(_ConvexAnswer):
+class Overlapping(_ConvexAnswer, _NoNumber):
     __match_args__: Final = ("first", "last")
     @property
     def distance(self) -> None: ...
@@ -532,7 +633,7 @@ class Overlapping(_ConvexAnswer):
     def last(self) -> LastContact: ...
 
 @final
-class DirectionalDepth(_ConvexAnswer):
+class DirectionalDepth(_ConvexAnswer, _Number):
     __match_args__: Final = ("depth",)
     @property
     def depth(self) -> float: ...
@@ -553,12 +654,11 @@ class Intersection(_ConvexAnswer):
 @final
 class Solid:
     def __new__(
-        cls, vertices: ArrayLike, faces: _Faces | None = None, *, open: bool = False
+        cls, vertices: ArrayLike | _Mesh, faces: _Faces | None = None, *, open: bool = False
     ) -> Solid: ...
+    def at(self, pose: _Pose = None) -> Placed: ...
     @staticmethod
     def from_pieces(pieces: Sequence[Solid | ConvexPolyhedron]) -> Solid: ...
-    @staticmethod
-    def from_trimesh(mesh: Any) -> Solid: ...
     @staticmethod
     def read(
         path: str | PathLike[str],
@@ -609,8 +709,8 @@ class Solid:
 class SolidCast:
     def __new__(
         cls,
-        moving: Solid | ConvexPolyhedron,
-        fixed: Solid | ConvexPolyhedron,
+        moving: _Body,
+        fixed: _Body,
         direction: ArrayLike,
         *,
         moving_pose: _Pose = None,
@@ -619,6 +719,7 @@ class SolidCast:
         min_gap: float = 0.0,
         ignore_start_overlaps: bool = False,
     ) -> SolidCast: ...
+    def cast(self) -> _SolidOutcome: ...
     def clearance(self) -> _SolidClearance: ...
     def certified_clearance(self) -> tuple[_SolidClearance, SolidCertificate]: ...
     def verify(self, proof: SolidCertificate) -> float: ...
@@ -646,7 +747,7 @@ class SolidCast:
     def __getnewargs_ex__(self) -> tuple[tuple[Any, ...], dict[str, Any]]: ...
 
 @final
-class SolidContact(_SolidAnswer):
+class SolidContact(_SolidAnswer, _Number):
     __match_args__: Final = ("translation", "normal", "point")
     @property
     def translation(self) -> float: ...
@@ -668,7 +769,7 @@ class SolidContact(_SolidAnswer):
     def fixed_feature(self) -> Feature: ...
 
 @final
-class SolidBlocked(_SolidAnswer):
+class SolidBlocked(_SolidAnswer, _Number):
     __match_args__: Final = ("distance", "contact")
     @property
     def distance(self) -> float: ...
@@ -678,7 +779,7 @@ class SolidBlocked(_SolidAnswer):
     def surfaces(self) -> list[str]: ...
 
 @final
-class SolidFree(_SolidAnswer):
+class SolidFree(_SolidAnswer, _Number):
     __match_args__: Final = ()
     @property
     def distance(self) -> float: ...
@@ -690,7 +791,7 @@ class SolidFree(_SolidAnswer):
     def surfaces(self) -> list[str]: ...
 
 @final
-class SolidOverlapping(_SolidAnswer):
+class SolidOverlapping(_SolidAnswer, _NoNumber):
     __match_args__: Final = ("least_tolerance",)
     @property
     def distance(self) -> None: ...
@@ -716,14 +817,15 @@ class SolidCertificate:
 class Pair:
     def __new__(
         cls,
-        moving: ConvexPolyhedron | Solid,
-        fixed: ConvexPolyhedron | Solid,
+        moving: _Body,
+        fixed: _Body,
         *,
         moving_pose: _Pose = None,
         fixed_pose: _Pose = None,
     ) -> Pair: ...
     def distance(self) -> Distance: ...
     def depth(self) -> Depth | OverlapDepth: ...
+    def intersects(self) -> Intersection | bool: ...
     def within(self, length: float) -> Within: ...
     @property
     def moving(self) -> ConvexPolyhedron | Solid: ...
@@ -794,8 +896,8 @@ _Motion: TypeAlias = Motion | _Pose
 class MotionCast:
     def __new__(
         cls,
-        moving: ConvexPolyhedron | Solid,
-        fixed: ConvexPolyhedron | Solid,
+        moving: _Body,
+        fixed: _Body,
         *,
         moving_motion: _Motion = None,
         fixed_motion: _Motion = None,
@@ -803,7 +905,7 @@ class MotionCast:
         tolerance: float | None = None,
         ignore_start_overlaps: bool = False,
     ) -> MotionCast: ...
-    def first_contact(self) -> FirstContact: ...
+    def motion(self) -> FirstContact: ...
     def clearance(self) -> MotionClearance: ...
     def to_json(self) -> str: ...
     @staticmethod
@@ -826,16 +928,12 @@ class MotionCast:
     def __getnewargs_ex__(self) -> tuple[Any, dict[str, Any]]: ...
 
 @final
-class FirstContact(_Answer):
+class FirstContact(_Answer, _Time):
     __match_args__: Final = ("outcome", "lower", "upper")
     @property
     def query(self) -> MotionCast: ...
     @property
     def outcome(self) -> Literal["contact", "grazing", "free", "overlapping", "undecided"]: ...
-    @property
-    def lower(self) -> float: ...
-    @property
-    def upper(self) -> float | None: ...
     @property
     def poses(self) -> tuple[Pose, Pose] | None: ...
     @property
@@ -848,9 +946,9 @@ class FirstContact(_Answer):
     def looks(self) -> int: ...
     def verify(self) -> None: ...
 
-def first_contact(
-    moving: ConvexPolyhedron | Solid,
-    fixed: ConvexPolyhedron | Solid,
+def motion(
+    moving: _Body,
+    fixed: _Body,
     moving_motion: _Motion,
     fixed_motion: _Motion = None,
     *,
@@ -859,7 +957,7 @@ def first_contact(
 ) -> FirstContact: ...
 
 @final
-class MotionClearance(_Answer):
+class MotionClearance(_Answer, _Travel):
     __match_args__: Final = ("outcome", "time")
     @property
     def query(self) -> MotionCast: ...
@@ -867,6 +965,8 @@ class MotionClearance(_Answer):
     def outcome(self) -> Literal["blocked", "free", "overlapping"]: ...
     @property
     def time(self) -> float | None: ...
+    @property
+    def upper(self) -> float | None: ...
     @property
     def bounds(self) -> tuple[float, float | None] | None: ...
     @property
@@ -878,8 +978,8 @@ class MotionClearance(_Answer):
     def verify(self) -> None: ...
 
 def motion_clearance(
-    moving: ConvexPolyhedron | Solid,
-    fixed: ConvexPolyhedron | Solid,
+    moving: _Body,
+    fixed: _Body,
     moving_motion: _Motion,
     fixed_motion: _Motion = None,
     *,
@@ -923,14 +1023,10 @@ class Robot:
     ) -> PathContact: ...
 
 @final
-class PathContact:
+class PathContact(_Time):
     __match_args__: Final = ("outcome", "lower", "upper")
     @property
     def outcome(self) -> Literal["contact", "grazing", "free", "overlapping", "undecided"]: ...
-    @property
-    def lower(self) -> float: ...
-    @property
-    def upper(self) -> float | None: ...
     @property
     def pair(self) -> tuple[str, str] | None: ...
     @property
@@ -971,12 +1067,8 @@ class _PairAnswer(_Answer):
     def query(self) -> Pair: ...
 
 @final
-class Distance(_PairAnswer):
+class Distance(_PairAnswer, _Number):
     __match_args__: Final = ("lower", "upper")
-    @property
-    def lower(self) -> float: ...
-    @property
-    def upper(self) -> float: ...
     @property
     def on_moving(self) -> _Floats: ...
     @property
@@ -990,12 +1082,8 @@ class Distance(_PairAnswer):
     def verify(self) -> None: ...
 
 @final
-class Depth(_PairAnswer):
+class Depth(_PairAnswer, _Number):
     __match_args__: Final = ("lower", "upper", "direction")
-    @property
-    def lower(self) -> float: ...
-    @property
-    def upper(self) -> float: ...
     @property
     def direction(self) -> _Floats: ...
     @property
@@ -1005,7 +1093,7 @@ class Depth(_PairAnswer):
     def verify(self) -> None: ...
 
 @final
-class OverlapDepth(_PairAnswer):
+class OverlapDepth(_PairAnswer, _Number):
     __match_args__: Final = ("meets", "least_tolerance")
     @property
     def meets(self) -> bool: ...
@@ -1028,32 +1116,33 @@ class Within(_PairAnswer):
     @property
     def steps(self) -> Steps | None: ...
     def verify(self) -> None: ...
+    def __bool__(self) -> bool: ...
 
 @final
 class Obstacles:
     def __new__(cls) -> Obstacles: ...
-    def add(self, body: ConvexPolyhedron | Solid, pose: _Pose = None) -> int: ...
+    def add(self, body: _Body, pose: _Pose = None) -> int: ...
     def add_many(
         self,
-        body: ConvexPolyhedron | Solid | Sequence[ConvexPolyhedron | Solid],
-        poses: ArrayLike | Sequence[Pose],
+        body: ConvexPolyhedron | Solid | Sequence[ConvexPolyhedron | Solid | Placed],
+        pose: _Poses = None,
     ) -> list[int]: ...
     def set_pose(self, obstacle: int, pose: _Pose) -> None: ...
-    def set_poses(self, obstacles: Sequence[int], poses: ArrayLike | Sequence[Pose]) -> None: ...
+    def set_poses(self, obstacles: Sequence[int], poses: _Poses) -> None: ...
     def remove(self, obstacle: int) -> None: ...
     def pose(self, obstacle: int) -> Pose: ...
     def __len__(self) -> int: ...
     def __contains__(self, obstacle: int, /) -> bool: ...
     def nearest(
         self,
-        body: ConvexPolyhedron | Solid,
+        body: _Body,
         pose: _Pose = None,
         *,
         ignore: Iterable[int] = (),
     ) -> NearestObstacle | None: ...
     def within(
         self,
-        body: ConvexPolyhedron | Solid,
+        body: _Body,
         length: float,
         pose: _Pose = None,
         *,
@@ -1061,7 +1150,7 @@ class Obstacles:
     ) -> NearbyObstacles: ...
     def clearance(
         self,
-        body: ConvexPolyhedron | Solid,
+        body: _Body,
         direction: ArrayLike,
         pose: _Pose = None,
         *,
@@ -1072,22 +1161,35 @@ class Obstacles:
     def nearest_many(
         self,
         body: ConvexPolyhedron | Solid,
-        poses: ArrayLike | Sequence[Pose],
+        pose: _Poses,
         *,
         ignore: Iterable[int] = (),
         threads: int | None = None,
-    ) -> dict[str, NDArray[Any]]: ...
+    ) -> NearestColumns: ...
     def clearance_many(
         self,
         body: ConvexPolyhedron | Solid,
-        directions: ArrayLike,
-        poses: ArrayLike | Sequence[Pose],
+        direction: ArrayLike,
+        pose: _Poses,
         *,
         before: float | None = None,
         min_gap: float = 0.0,
         ignore: Iterable[int] = (),
         threads: int | None = None,
-    ) -> dict[str, NDArray[Any]]: ...
+    ) -> ObstacleClearanceColumns: ...
+    def _nearest_rows(
+        self, body: Any, poses: Any, ignore: Iterable[int], threads: int | None
+    ) -> _Answered: ...
+    def _clearance_rows(
+        self,
+        body: Any,
+        directions: Any,
+        poses: Any,
+        before: float | None,
+        min_gap: float,
+        ignore: Iterable[int],
+        threads: int | None,
+    ) -> _Answered: ...
 
 @type_check_only
 class _Proven:
@@ -1107,13 +1209,9 @@ class NearbyObstacles(_Proven):
     def __eq__(self, other: object, /) -> bool: ...
 
 @final
-class NearestObstacle(_Proven):
+class NearestObstacle(_Proven, _Number):
     @property
     def obstacle(self) -> int: ...
-    @property
-    def lower(self) -> float: ...
-    @property
-    def upper(self) -> float: ...
     @property
     def on_moving(self) -> _Floats: ...
     @property
@@ -1122,7 +1220,7 @@ class NearestObstacle(_Proven):
     def normal(self) -> _Floats | None: ...
 
 @final
-class ObstacleClearance(_Proven):
+class ObstacleClearance(_Proven, _Travel):
     @property
     def outcome(self) -> Literal["blocked", "free", "overlapping"]: ...
     @property
@@ -1171,8 +1269,8 @@ class Tracker:
     def steps(self) -> Steps: ...
     def cast(
         self,
-        moving: ConvexPolyhedron,
-        fixed: ConvexPolyhedron,
+        moving: ConvexPolyhedron | Placed,
+        fixed: ConvexPolyhedron | Placed,
         direction: ArrayLike,
         *,
         moving_pose: _Pose = None,
@@ -1183,8 +1281,8 @@ class Tracker:
     ) -> _Outcome: ...
     def contact_range(
         self,
-        moving: ConvexPolyhedron,
-        fixed: ConvexPolyhedron,
+        moving: ConvexPolyhedron | Placed,
+        fixed: ConvexPolyhedron | Placed,
         direction: ArrayLike,
         *,
         moving_pose: _Pose = None,
@@ -1195,8 +1293,8 @@ class Tracker:
     ) -> ContactRange | Separated: ...
     def clearance(
         self,
-        moving: ConvexPolyhedron,
-        fixed: ConvexPolyhedron,
+        moving: ConvexPolyhedron | Placed,
+        fixed: ConvexPolyhedron | Placed,
         direction: ArrayLike,
         *,
         moving_pose: _Pose = None,
@@ -1207,8 +1305,8 @@ class Tracker:
     ) -> _Clearance: ...
     def directional_depth(
         self,
-        moving: ConvexPolyhedron,
-        fixed: ConvexPolyhedron,
+        moving: ConvexPolyhedron | Placed,
+        fixed: ConvexPolyhedron | Placed,
         direction: ArrayLike,
         *,
         moving_pose: _Pose = None,
@@ -1219,8 +1317,8 @@ class Tracker:
     ) -> DirectionalDepth: ...
     def intersects(
         self,
-        moving: ConvexPolyhedron,
-        fixed: ConvexPolyhedron,
+        moving: ConvexPolyhedron | Placed,
+        fixed: ConvexPolyhedron | Placed,
         direction: ArrayLike,
         *,
         moving_pose: _Pose = None,
@@ -1230,6 +1328,7 @@ class Tracker:
         solver: _Solver = "auto",
     ) -> Intersection: ...
 
+@overload
 def cast(
     moving: ConvexPolyhedron,
     fixed: ConvexPolyhedron,
@@ -1237,13 +1336,57 @@ def cast(
     *,
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
-    graze_tolerance: float = 0.0,
+    graze_tolerance: float | None = None,
     min_gap: float = 0.0,
     solver: _Solver = "auto",
+    tolerance: None = None,
+    ignore_start_overlaps: Literal[False] = False,
 ) -> _Outcome: ...
+@overload
+def cast(
+    moving: Solid,
+    fixed: _Body,
+    direction: ArrayLike,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+    graze_tolerance: None = None,
+    min_gap: float = 0.0,
+    solver: _Solver = "auto",
+    tolerance: float | None = None,
+    ignore_start_overlaps: bool = False,
+) -> _SolidOutcome: ...
+@overload
+def cast(
+    moving: _Body,
+    fixed: Solid,
+    direction: ArrayLike,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+    graze_tolerance: None = None,
+    min_gap: float = 0.0,
+    solver: _Solver = "auto",
+    tolerance: float | None = None,
+    ignore_start_overlaps: bool = False,
+) -> _SolidOutcome: ...
+@overload
+def cast(
+    moving: _Body,
+    fixed: _Body,
+    direction: ArrayLike,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+    graze_tolerance: float | None = None,
+    min_gap: float = 0.0,
+    solver: _Solver = "auto",
+    tolerance: float | None = None,
+    ignore_start_overlaps: bool = False,
+) -> _Outcome | _SolidOutcome: ...
 def contact_range(
-    moving: ConvexPolyhedron,
-    fixed: ConvexPolyhedron,
+    moving: ConvexPolyhedron | Placed,
+    fixed: ConvexPolyhedron | Placed,
     direction: ArrayLike,
     *,
     moving_pose: _Pose = None,
@@ -1269,7 +1412,7 @@ def clearance(
 @overload
 def clearance(
     moving: Solid,
-    fixed: Solid | ConvexPolyhedron,
+    fixed: _Body,
     direction: ArrayLike,
     *,
     moving_pose: _Pose = None,
@@ -1282,7 +1425,7 @@ def clearance(
 ) -> _SolidClearance: ...
 @overload
 def clearance(
-    moving: ConvexPolyhedron,
+    moving: _Body,
     fixed: Solid,
     direction: ArrayLike,
     *,
@@ -1294,9 +1437,23 @@ def clearance(
     tolerance: float | None = None,
     ignore_start_overlaps: bool = False,
 ) -> _SolidClearance: ...
+@overload
+def clearance(
+    moving: _Body,
+    fixed: _Body,
+    direction: ArrayLike,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+    graze_tolerance: float | None = None,
+    min_gap: float = 0.0,
+    solver: _Solver = "auto",
+    tolerance: float | None = None,
+    ignore_start_overlaps: bool = False,
+) -> _Clearance | _SolidClearance: ...
 def directional_depth(
-    moving: ConvexPolyhedron,
-    fixed: ConvexPolyhedron,
+    moving: ConvexPolyhedron | Placed,
+    fixed: ConvexPolyhedron | Placed,
     direction: ArrayLike,
     *,
     moving_pose: _Pose = None,
@@ -1309,47 +1466,37 @@ def directional_depth(
 def intersects(
     moving: ConvexPolyhedron,
     fixed: ConvexPolyhedron,
-    direction: ArrayLike,
     *,
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
-    graze_tolerance: float | None = None,
-    min_gap: float = 0.0,
-    solver: _Solver = "auto",
-    tolerance: None = None,
-    ignore_start_overlaps: Literal[False] = False,
 ) -> Intersection: ...
 @overload
 def intersects(
     moving: Solid,
-    fixed: Solid | ConvexPolyhedron,
-    direction: ArrayLike,
+    fixed: _Body,
     *,
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
-    graze_tolerance: None = None,
-    min_gap: float = 0.0,
-    solver: _Solver = "auto",
-    tolerance: float | None = None,
-    ignore_start_overlaps: bool = False,
 ) -> bool: ...
 @overload
 def intersects(
-    moving: ConvexPolyhedron,
+    moving: _Body,
     fixed: Solid,
-    direction: ArrayLike,
     *,
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
-    graze_tolerance: None = None,
-    min_gap: float = 0.0,
-    solver: _Solver = "auto",
-    tolerance: float | None = None,
-    ignore_start_overlaps: bool = False,
 ) -> bool: ...
+@overload
+def intersects(
+    moving: _Body,
+    fixed: _Body,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+) -> Intersection | bool: ...
 def distance(
-    moving: ConvexPolyhedron | Solid,
-    fixed: ConvexPolyhedron | Solid,
+    moving: _Body,
+    fixed: _Body,
     *,
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
@@ -1365,22 +1512,30 @@ def depth(
 @overload
 def depth(
     moving: Solid,
-    fixed: ConvexPolyhedron | Solid,
+    fixed: _Body,
     *,
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
 ) -> OverlapDepth: ...
 @overload
 def depth(
-    moving: ConvexPolyhedron,
+    moving: _Body,
     fixed: Solid,
     *,
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
 ) -> OverlapDepth: ...
+@overload
+def depth(
+    moving: _Body,
+    fixed: _Body,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+) -> Depth | OverlapDepth: ...
 def within(
-    moving: ConvexPolyhedron | Solid,
-    fixed: ConvexPolyhedron | Solid,
+    moving: _Body,
+    fixed: _Body,
     length: float,
     *,
     moving_pose: _Pose = None,
@@ -1420,8 +1575,8 @@ class FreeDirections:
     def save_proof(self, path: str | PathLike[str]) -> None: ...
 
 def free_directions(
-    moving: ConvexPolyhedron | Solid,
-    fixed: ConvexPolyhedron | Solid,
+    moving: _Body,
+    fixed: _Body,
     *,
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,
@@ -1453,8 +1608,8 @@ class WaysOut:
     def to_dict(self) -> dict[str, Any]: ...
 
 def ways_out(
-    moving: ConvexPolyhedron | Solid,
-    fixed: ConvexPolyhedron | Solid,
+    moving: _Body,
+    fixed: _Body,
     *,
     moving_pose: _Pose = None,
     fixed_pose: _Pose = None,

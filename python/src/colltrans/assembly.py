@@ -8,13 +8,33 @@ from dataclasses import dataclass, field, replace
 from html import escape
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from colltrans import _colltrans
 from colltrans.errors import InputError
+
+if TYPE_CHECKING:
+    from colltrans._colltrans import _Mesh
+
+__all__ = [
+    "Assembly",
+    "Audit",
+    "Blocking",
+    "Move",
+    "PairFit",
+    "Plan",
+    "RemovalMap",
+    "Rooms",
+    "Stage",
+    "Step",
+    "Stuck",
+    "Turn",
+    "Wanted",
+    "audit",
+]
 
 Floats = NDArray[np.float64]
 
@@ -487,6 +507,18 @@ class RemovalMap:
         return sum(angle for angle, _ in self.regions) / (4 * np.pi)
 
 
+def _mesh(name: str, mesh: Any) -> Sequence[Any]:
+    """Returns the vertices and the faces of a part."""
+    faces = getattr(mesh, "faces", None)
+    faces = getattr(mesh, "triangles", None) if faces is None else faces
+    if faces is not None and hasattr(mesh, "vertices"):
+        return mesh.vertices, faces
+    if not isinstance(mesh, Sequence) or isinstance(mesh, str) or len(mesh) != 2:
+        what = type(mesh).__name__
+        raise InputError(f"parts[{name!r}]: a pair (vertices, faces) or a mesh, not a {what}")
+    return mesh
+
+
 def _list(names: str | Sequence[str]) -> list[str]:
     return [names] if isinstance(names, str) else list(names)
 
@@ -496,8 +528,9 @@ class Assembly:
 
     Parameters
     ----------
-    parts : mapping of str to tuple of (array_like, faces)
-        For each part name the vertices, of shape (N, 3), and the faces of its surface.
+    parts : mapping of str to tuple of (array_like, faces), mesh or body
+        For each part name the vertices, of shape (N, 3), and the faces of its surface, or an object
+        with ``vertices`` and ``faces`` or ``triangles``: a mesh of trimesh or open3d, or a body.
 
     Raises
     ------
@@ -518,15 +551,12 @@ class Assembly:
     (['bolt_0'], 6, True)
     """
 
-    def __init__(self, parts: Mapping[str, tuple[ArrayLike, Any]]) -> None:
+    def __init__(self, parts: "Mapping[str, tuple[ArrayLike, Any] | _Mesh]") -> None:
         if not isinstance(parts, Mapping):
             what = f"parts: a dict of names to (vertices, faces), not a {type(parts).__name__}"
             raise InputError(f"{what}; Assembly.read(path) reads a file or a folder")
-        for name, mesh in parts.items():
-            if not isinstance(mesh, Sequence) or isinstance(mesh, str) or len(mesh) != 2:
-                what = type(mesh).__name__
-                raise InputError(f"parts[{name!r}]: a pair (vertices, faces), not a {what}")
-        self._assembly = _colltrans.Assembly([(name, *mesh) for name, mesh in parts.items()])
+        meshes = [(name, *_mesh(name, mesh)) for name, mesh in parts.items()]
+        self._assembly = _colltrans.Assembly(meshes)
 
     @classmethod
     def _of(cls, assembly: _colltrans.Assembly) -> "Assembly":
@@ -1091,7 +1121,7 @@ def audit(
     Examples
     --------
     >>> import numpy as np
-    >>> from colltrans import audit
+    >>> from colltrans.assembly import audit
     >>> corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
     >>> faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     >>> parts = {"a": (corners, faces), "b": (corners + [0.75, 0, 0], faces)}

@@ -2,6 +2,21 @@
 
 import errno
 
+__all__ = [
+    "AssemblyError",
+    "BuildError",
+    "CaseError",
+    "CertificateError",
+    "ColltransError",
+    "InputError",
+    "MeshError",
+    "MissingFileError",
+    "NotConvergedError",
+    "PoseError",
+    "QueryError",
+    "RoundedPoseWarning",
+]
+
 
 class ColltransError(Exception):
     """The base class of all errors in this module."""

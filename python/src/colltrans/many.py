@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from colltrans._colltrans import Solid
-from colltrans.columns import ClearanceColumns, ContactColumns, RangeColumns
 from colltrans.errors import InputError
 from colltrans.queries import (
     AnyBodies,
@@ -23,14 +22,16 @@ from colltrans.queries import (
     Queries,
     Solver,
     column,
-    listed,
+    has_solid,
     queries_of,
     refuse_solids,
     table,
 )
-from colltrans.solids import SolidColumns, solid_casts
+from colltrans.solids import SolidColumns, SolidContactColumns, solid_casts
+from colltrans.table import ClearanceColumns, ContactColumns, RangeColumns
 
 
+@overload
 def cast_many(
     moving: Bodies,
     fixed: Bodies,
@@ -45,20 +46,93 @@ def cast_many(
     solver: Solver = "auto",
     features: bool = False,
     threads: int | None = None,
-) -> ContactColumns:
+) -> ContactColumns: ...
+@overload
+def cast_many(
+    moving: Solid,
+    fixed: AnyBodies,
+    direction: ArrayLike,
+    *,
+    moving_pose: Poses = None,
+    fixed_pose: Poses = None,
+    moving_index: ArrayLike | None = None,
+    fixed_index: ArrayLike | None = None,
+    min_gap: ArrayLike = 0.0,
+    solver: Solver = "auto",
+    features: bool = False,
+    threads: int | None = None,
+    tolerance: ArrayLike | None = None,
+    ignore_start_overlaps: bool = False,
+) -> SolidContactColumns: ...
+@overload
+def cast_many(
+    moving: AnyBodies,
+    fixed: Solid,
+    direction: ArrayLike,
+    *,
+    moving_pose: Poses = None,
+    fixed_pose: Poses = None,
+    moving_index: ArrayLike | None = None,
+    fixed_index: ArrayLike | None = None,
+    min_gap: ArrayLike = 0.0,
+    solver: Solver = "auto",
+    features: bool = False,
+    threads: int | None = None,
+    tolerance: ArrayLike | None = None,
+    ignore_start_overlaps: bool = False,
+) -> SolidContactColumns: ...
+@overload
+def cast_many(
+    moving: AnyBodies,
+    fixed: AnyBodies,
+    direction: ArrayLike,
+    *,
+    moving_pose: Poses = None,
+    fixed_pose: Poses = None,
+    moving_index: ArrayLike | None = None,
+    fixed_index: ArrayLike | None = None,
+    graze_tolerance: ArrayLike = 0.0,
+    min_gap: ArrayLike = 0.0,
+    solver: Solver = "auto",
+    features: bool = False,
+    threads: int | None = None,
+    tolerance: ArrayLike | None = None,
+    ignore_start_overlaps: bool = False,
+) -> ContactColumns | SolidContactColumns: ...
+def cast_many(
+    moving: AnyBodies,
+    fixed: AnyBodies,
+    direction: ArrayLike,
+    *,
+    moving_pose: Poses = None,
+    fixed_pose: Poses = None,
+    moving_index: ArrayLike | None = None,
+    fixed_index: ArrayLike | None = None,
+    graze_tolerance: ArrayLike = 0.0,
+    min_gap: ArrayLike = 0.0,
+    solver: Solver = "auto",
+    features: bool = False,
+    threads: int | None = None,
+    tolerance: ArrayLike | None = None,
+    ignore_start_overlaps: bool = False,
+) -> ContactColumns | SolidContactColumns:
     """Runs :func:`cast` for every row.
 
     Parameters
     ----------
-    moving, fixed : ConvexPolyhedron or sequence of them
+    moving, fixed : ConvexPolyhedron, Solid, Placed, or sequence of them
         One body for all rows, a list with an index for each row, or a list with a body for each
-        row. An exception in the list stands for a body that could not be built; its rows are
-        errors.
+        row. Placed bodies, ``body.at(pose)``, have their poses. If one body is a solid, all are
+        treated as solids. An exception in the list stands for a body that could not be built; its
+        rows are errors.
     direction : array_like of shape (3,) or (N, 3)
         Vectors of the world, of any length. Translations are multiples of them.
     moving_pose, fixed_pose : array_like, Pose or object with ``as_matrix()``, optional
         One pose for all rows, of shape (3,), (7,), (3, 4) or (4, 4), or one for each row, of shape
-        (N, 3), (N, 7), (N, 3, 4) or (N, 4, 4); see :class:`Pose`.
+        (N, 3), (N, 7), (N, 3, 3), (N, 3, 4) or (N, 4, 4); a list of :class:`Pose`; a pair of
+        positions (N, 3) and quaternions (N, 4), or a list of such pairs; a stack of rotations of
+        scipy. See :class:`Pose`. An array (3, 3) is three translations, unless it is a rotation,
+        which is rejected as ambiguous.
     moving_index, fixed_index : array_like of int, shape (N,), optional
         The index of the body of each row.
     graze_tolerance : float or array_like of shape (N,)
@@ -67,6 +141,8 @@ def cast_many(
     min_gap : float or array_like of shape (N,)
         A minimum gap, a length. The result is then the translation at which the distance of the
         bodies first falls to it.
+    tolerance, ignore_start_overlaps
+        See :func:`clearance_many`; only if one of the bodies is a solid.
     solver : {"auto", "cta", "portal"} or Cta
         The search algorithm. Answers are equally accurate; the normal and the features may differ
         if vertices or parallel edges meet.
@@ -79,7 +155,7 @@ def cast_many(
 
     Returns
     -------
-    ContactColumns
+    ContactColumns or SolidContactColumns
 
     Raises
     ------
@@ -120,9 +196,14 @@ def cast_many(
     >>> columns[1].features.moving.kind
     'face'
     """
-    poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
-    refuse_solids(moving, fixed)
-    queries = _casts((moving, fixed), direction, poses, indices, graze_tolerance, min_gap, solver)
+    bodies, indices = (moving, fixed), (moving_index, fixed_index)
+    poses = (moving_pose, fixed_pose)
+    if _are_solids(bodies, graze_tolerance, solver, tolerance, ignore_start_overlaps):
+        solids = solid_casts(
+            bodies, direction, poses, indices, min_gap, tolerance, ignore_start_overlaps
+        )
+        return SolidContactColumns._ask(solids, features, threads)
+    queries = _casts(bodies, direction, poses, indices, graze_tolerance, min_gap, solver)
     return ContactColumns._ask(queries, features, threads)
 
 
@@ -289,18 +370,31 @@ def clearance_many(
     """
     bodies, indices = (moving, fixed), (moving_index, fixed_index)
     poses = (moving_pose, fixed_pose)
-    if any(isinstance(body, Solid) for side in bodies for body in listed(side)):
-        if np.any(graze_tolerance) or solver != "auto":
-            told = "graze_tolerance, solver: are for convex bodies; solids have tolerance"
-            raise InputError(told)
+    if _are_solids(bodies, graze_tolerance, solver, tolerance, ignore_start_overlaps):
         solids = solid_casts(
             bodies, direction, poses, indices, min_gap, tolerance, ignore_start_overlaps
         )
         return SolidColumns._ask(solids, features, threads)
-    if tolerance is not None or ignore_start_overlaps:
-        raise InputError("tolerance, ignore_start_overlaps: are for solids")
     queries = _casts(bodies, direction, poses, indices, graze_tolerance, min_gap, solver)
     return ClearanceColumns._ask(queries, features, threads)
+
+
+def _are_solids(
+    bodies: tuple[AnyBodies, AnyBodies],
+    graze_tolerance: ArrayLike,
+    solver: Solver,
+    tolerance: ArrayLike | None,
+    ignore_start_overlaps: bool,
+) -> bool:
+    """Checks whether a body is a solid, and that no argument is for the other kind of bodies."""
+    if has_solid(*bodies):
+        if np.any(graze_tolerance) or solver != "auto":
+            told = "graze_tolerance, solver: are for convex bodies; solids have tolerance"
+            raise InputError(told)
+        return True
+    if tolerance is not None or ignore_start_overlaps:
+        raise InputError("tolerance, ignore_start_overlaps: are for solids")
+    return False
 
 
 def _casts(

@@ -1,4 +1,4 @@
-"""First contacts and clearances of many motions, as columns."""
+"""Bodies that move in time: motions, their queries and answers, single and in rows."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,8 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from colltrans import _arrays, _colltrans
-from colltrans._colltrans import FirstContact, Motion, MotionClearance
-from colltrans.columns import TimeColumns
+from colltrans._colltrans import (
+    FirstContact,
+    Motion,
+    MotionCast,
+    MotionClearance,
+    motion,
+    motion_clearance,
+)
 from colltrans.errors import InputError
 from colltrans.queries import (
     AnyBodies,
@@ -21,6 +27,20 @@ from colltrans.queries import (
     queries_of,
     together,
 )
+from colltrans.table import TimeColumns
+
+__all__ = [
+    "FirstContact",
+    "Motion",
+    "MotionCast",
+    "MotionClearance",
+    "MotionClearanceColumns",
+    "MotionColumns",
+    "motion",
+    "motion_clearance",
+    "motion_clearance_many",
+    "motion_many",
+]
 
 #: One motion for all rows, one for each row, or a kind of motion with arrays of its numbers.
 Motions: TypeAlias = Motion | Sequence[Motion] | Mapping[str, Mapping[str, ArrayLike]] | None
@@ -42,7 +62,8 @@ class MotionColumns(TimeColumns[FirstContact]):
     ----------
     lower, upper : ndarray of shape (N,)
         Proven bounds of the times of contacts, from 0 (start of the motion) to 1 (end): the bodies
-        do not meet before the first one, and meet at the second one.
+        do not meet before the first one, and meet at the second one. The first one is 1 if they
+        never meet. The second one is infinite if they never meet or no contact is proven.
     normal : ndarray of shape (N, 3)
         Unit normals, in the world, from the moving body to the fixed one.
     point : ndarray of shape (N, 3)
@@ -52,7 +73,7 @@ class MotionColumns(TimeColumns[FirstContact]):
     normal: Floats
     point: Floats
 
-    _question, _name = staticmethod(_colltrans.first_contact), "motion"
+    _question, _name = staticmethod(_colltrans.motion), "motion"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -63,8 +84,8 @@ class MotionClearanceColumns(TimeColumns[MotionClearance]):
     ----------
     lower, upper : ndarray of shape (N,)
         The body can move until the first time. At the second time the stopping features meet in
-        their nominal position, or after the tolerance is applied; NaN if neither is proven. Both
-        are NaN unless the body is blocked.
+        their nominal position, or after the tolerance is applied; infinite if neither is proven.
+        Both are 1 if the body can move to the end, NaN if the bodies overlap at the start.
     least_tolerance : ndarray of shape (N,)
         The smallest tolerance without an overlap, for bodies that overlap at the start of the
         motion.
@@ -79,6 +100,11 @@ class MotionClearanceColumns(TimeColumns[MotionClearance]):
     point: Floats
 
     _question, _name = staticmethod(_colltrans.motion_clearance), "motion_clearance"
+
+    @property
+    def value(self) -> Floats:
+        """ndarray of shape (N,): The time until which the body can move; NaN for an overlap."""
+        return self.lower
 
 
 def motion_many(
@@ -96,7 +122,7 @@ def motion_many(
     features: bool = False,
     threads: int | None = None,
 ) -> MotionColumns:
-    """Runs :func:`first_contact` for every row.
+    """Runs :func:`motion` for every row.
 
     Parameters
     ----------
@@ -136,7 +162,7 @@ def motion_many(
     >>> columns
     MotionColumns(4 rows: 2 contact, 1 free, 1 error)
     >>> columns.lower.round(6)
-    array([     nan, 0.553574, 0.36905 ,      nan])
+    array([1.      , 0.553574, 0.36905 ,      nan])
     """
     sides = (
         (moving, moving_index, moving_motion, moving_pose),
@@ -173,7 +199,8 @@ def motion_clearance_many(
 
     Examples
     --------
-    >>> from colltrans import ConvexPolyhedron, motion_clearance_many
+    >>> from colltrans import ConvexPolyhedron
+    >>> from colltrans.motions import motion_clearance_many
     >>> block = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     >>> table = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
     >>> ways = {"slide": {"by": [[1, 0, 0], [0, 0, 2], [0, 0, -1]]}}

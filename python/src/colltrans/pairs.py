@@ -1,13 +1,15 @@
-"""Distances, depths and comparisons with a length for many pairs of bodies, as columns."""
+"""Distances, depths, intersections and comparisons with a length of many pairs, as columns."""
 
 from dataclasses import dataclass
+from typing import Any
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from colltrans import _colltrans
-from colltrans._colltrans import Depth, Distance, OverlapDepth, Within
-from colltrans.columns import Answer_co, Table
+from colltrans._colltrans import Depth, Distance, Intersection, OverlapDepth, Within
 from colltrans.queries import AnyBodies, Floats, Poses, column, queries_of
+from colltrans.table import Answer_co, Table, middle
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -22,6 +24,11 @@ class PairColumns(Table[Answer_co]):
 
     lower: Floats
     upper: Floats
+
+    @property
+    def value(self) -> Floats:
+        """ndarray of shape (N,): The middle of both bounds."""
+        return middle(self.lower, self.upper)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,8 +54,6 @@ class DistanceColumns(PairColumns[Distance]):
 class DepthColumns(PairColumns[Depth | OverlapDepth]):
     """The answers of :func:`depth_many`; see :class:`PairColumns`.
 
-    The bounds ``lower`` and ``upper`` of solids that overlap are NaN.
-
     Attributes
     ----------
     least_tolerance : ndarray of shape (N,)
@@ -62,6 +67,10 @@ class DepthColumns(PairColumns[Depth | OverlapDepth]):
     direction: Floats
 
     _question, _name = staticmethod(_colltrans.depth), "depth"
+
+    def _is_row(self, answer: Any, i: int) -> bool:
+        found = (answer.lower, answer.upper, answer.to_dict()["outcome"])
+        return found == (self.lower[i], self.upper[i], self.outcome[i])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -83,6 +92,21 @@ class WithinColumns(PairColumns[Within]):
     on_fixed: Floats
 
     _question, _name = staticmethod(_colltrans.within), "within"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class IntersectsColumns(Table[Intersection | bool]):
+    """The answers of :func:`intersects_many`, in ``outcome``; see :class:`Table`."""
+
+    _question, _name = staticmethod(_colltrans.intersects), "intersects"
+
+    @property
+    def meets(self) -> NDArray[np.bool_]:
+        """ndarray of bool, shape (N,): Whether the bodies of each row meet."""
+        return self.where("meeting")
+
+    def _is_row(self, answer: Any, i: int) -> bool:
+        return bool(answer) == bool(self.outcome[i] == "meeting")
 
 
 def distance_many(
@@ -197,3 +221,39 @@ def within_many(
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
     queries = queries_of((moving, fixed), poses, indices, {"length": column(length, "length")})
     return WithinColumns._ask(queries, False, threads)
+
+
+def intersects_many(
+    moving: AnyBodies,
+    fixed: AnyBodies,
+    *,
+    moving_pose: Poses = None,
+    fixed_pose: Poses = None,
+    moving_index: ArrayLike | None = None,
+    fixed_index: ArrayLike | None = None,
+    threads: int | None = None,
+) -> IntersectsColumns:
+    """Runs :func:`intersects` for every row.
+
+    Parameters
+    ----------
+    moving, fixed, moving_pose, fixed_pose, moving_index, fixed_index, threads
+        See :func:`distance_many`.
+
+    Returns
+    -------
+    IntersectsColumns
+
+    Examples
+    --------
+    >>> from colltrans import ConvexPolyhedron, intersects_many
+    >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    >>> columns = intersects_many(cube, cube, moving_pose=[[0.5, 0, 0], [3, 0, 0]])
+    >>> columns
+    IntersectsColumns(2 rows: 1 meeting, 1 apart)
+    >>> columns.meets
+    array([ True, False])
+    """
+    poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
+    queries = queries_of((moving, fixed), poses, indices, {})
+    return IntersectsColumns._ask(queries, False, threads)

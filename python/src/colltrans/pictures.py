@@ -112,15 +112,15 @@ def picture(answer: Any) -> Any:
     import plotly.graph_objects as go
 
     if isinstance(answer, Cast):
-        answer = answer.first_contact()
+        answer = answer.cast()
     elif isinstance(answer, SolidCast):
         answer = answer.clearance()
     elif isinstance(answer, Pair):
         answer = answer.distance()
     elif isinstance(answer, MotionCast):
-        answer = answer.first_contact()
+        answer = answer.motion()
     elif isinstance(answer, MotionClearance):
-        answer = _cleared(answer).first_contact()
+        answer = _cleared(answer).motion()
     figure = go.Figure()
     figure.add_traces(list(_traces(go, answer)))
     axes = {axis: {"showbackground": False} for axis in ("xaxis", "yaxis", "zaxis")}

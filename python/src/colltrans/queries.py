@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from colltrans import _arrays, _colltrans
-from colltrans._colltrans import ConvexPolyhedron, Cta, Motion, Pose, Solid
+from colltrans._colltrans import ConvexPolyhedron, Cta, Motion, Placed, Pose, Solid
 from colltrans.errors import ColltransError, InputError, RoundedPoseWarning
 
 if TYPE_CHECKING:
@@ -26,15 +26,15 @@ Shape: TypeAlias = tuple[int, ...]
 Index: TypeAlias = NDArray[np.int64] | None
 Bodies: TypeAlias = "ConvexPolyhedron | Sequence[ConvexPolyhedron | ColltransError]"
 AnyBodies: TypeAlias = (
-    "ConvexPolyhedron | Solid | Sequence[ConvexPolyhedron | Solid | ColltransError]"
+    "ConvexPolyhedron | Solid | Placed"
+    " | Sequence[ConvexPolyhedron | Solid | Placed | ColltransError]"
 )
-Poses: TypeAlias = "ArrayLike | Pose | Sequence[Pose] | HasMatrix | None"
+Poses: TypeAlias = "ArrayLike | Pose | HasMatrix | Sequence[Any] | None"
 Solver: TypeAlias = Literal["auto", "cta", "portal"] | Cta
 #: Arguments that precede the poses.
 POSITIONAL = ("direction", "moving_motion", "fixed_motion")
 #: The two bodies of a query.
 SIDES = ("moving", "fixed")
-POSES = ("moving_pose", "fixed_pose")
 
 
 class Stack(NamedTuple):
@@ -75,7 +75,7 @@ class Queries:
     def ask(self, question: Any, i: int) -> Any:
         """Answers a single query."""
         bodies = (self._body(side, i) for side in (0, 1))
-        arguments = {name: _argument(name, table, i) for name, table in self.tables.items()}
+        arguments = {name: argument(name, table, i) for name, table in self.tables.items()}
         for side in SIDES:
             if (motion := arguments.get(f"{side}_motion")) is not None:
                 pose = arguments.pop(f"{side}_pose")
@@ -94,14 +94,14 @@ class Queries:
         return listed[which]
 
 
-def _argument(name: str, table: Floats | list[Motion], i: int) -> Any:
+def argument(name: str, table: Floats | list[Motion], i: int) -> Any:
     """Returns the argument of one query; None stands for the default."""
     row: Any = table[i if len(table) > 1 else 0]
     if isinstance(row, Motion):
         return row
     if row.size == 1:
         return None if name == "tolerance" and np.isnan(row[0]) else float(row[0])
-    return row.reshape(-1, 4) if name in POSES and row.size > 7 else row
+    return row.reshape(-1, 4) if name.endswith("pose") and row.size > 7 else row
 
 
 def _motion_of(row: Floats, pose: Floats) -> Motion:
@@ -115,12 +115,32 @@ def _motion_of(row: Floats, pose: Floats) -> Motion:
 
 
 def refuse_solids(*sides: Any) -> None:
-    if any(isinstance(body, Solid) for side in sides for body in listed(side)):
-        raise TypeError("solids have no casts; call clearance_many")
+    if has_solid(*sides):
+        raise TypeError("contact ranges of solids are not answered; call cast_many")
 
 
 def listed(bodies: Any) -> Any:
-    return [bodies] if isinstance(bodies, (ConvexPolyhedron, Solid)) else bodies
+    return [bodies] if isinstance(bodies, (ConvexPolyhedron, Placed, Solid)) else bodies
+
+
+def has_solid(*sides: Any) -> bool:
+    """Checks whether a body of these arguments is a solid, placed or not."""
+    bodies = (getattr(body, "body", body) for side in sides for body in listed(side))
+    return any(isinstance(body, Solid) for body in bodies)
+
+
+def _unplaced(bodies: Any, pose: Poses, side: str) -> tuple[Any, Poses]:
+    """Separates placed bodies from their poses."""
+    each = listed(bodies)
+    if not any(isinstance(body, Placed) for body in each):
+        return bodies, pose
+    if pose is not None:
+        raise InputError(f"{side}_pose: {side} has a pose already, from body.at(pose); drop one")
+    if not all(isinstance(body, Placed) for body in each):
+        raise InputError(f"{side}: either all bodies of a list have poses, or none")
+    if each is not bodies:
+        return bodies.body, bodies.pose
+    return [body.body for body in each], [body.pose for body in each]
 
 
 def queries_of(
@@ -133,7 +153,8 @@ def queries_of(
     """Converts all arguments to tables, with the axes of their broadcast."""
     sides = zip(SIDES, bodies, poses, indices, strict=True)
     listed, stacks, indexed = [], dict[str, Stack | None](), dict[str, Stack | None]()
-    for side, of_side, pose, index in sides:
+    for side, given, at, index in sides:
+        of_side, pose = _unplaced(given, at, side)
         all_bodies, indexed[f"{side}_index"] = body_list(of_side, index, side)
         listed.append(all_bodies)
         stacks[f"{side}_pose"] = pose_table(pose, f"{side}_pose")
@@ -229,28 +250,65 @@ def column(values: ArrayLike | None, name: str) -> Stack:
 
 
 def pose_table(values: Poses, name: str) -> Stack:
+    """Reads rows of poses: numbers, or objects that describe poses."""
     if values is None:
         return Stack(np.zeros((1, 3)), ())
     given: Any = values
-    if isinstance(given, Sequence) and given and all(isinstance(v, Pose) for v in given):
-        given = np.array([pose.as_matrix() for pose in given])
     matrices = hasattr(given, "as_matrix")
-    array = _arrays.floats(given.as_matrix() if matrices else given, name)
-    if matrices and array.shape[-2:] == (3, 3):
-        array = np.concatenate([array, np.zeros((*array.shape[:-1], 1))], axis=-1)
+    if matrices:
+        given = given.as_matrix()
+    elif isinstance(given, (list, tuple)) and given:
+        given = _numbers_of_poses(given, name)
+    array = _arrays.floats(given, name)
     shape = array.shape
+    if shape == (3, 3) and not matrices and is_rotation(array):
+        told = "one rotation or three translations? Give Pose(matrix), or a list of three Pose"
+        raise InputError(f"{name}: the array of shape (3, 3) is ambiguous: {told}")
+    if shape[-2:] == (3, 3) and (matrices or len(shape) > 2):
+        array = np.concatenate([array, np.zeros((*shape[:-1], 1))], axis=-1)
+        shape = array.shape
     if shape[-2:] in ((3, 4), (4, 4)):
         table = array.reshape(-1, 4 * shape[-2])
         return Stack(nearest_rotations(table, name), shape[:-2])
-    if shape[-2:] == (3, 3) and len(shape) > 2:
-        told = "give rotations as (N, 3, 4), or three poses with quaternions as a stack (1, 3, 7)"
-        raise InputError(f"{name}: an array of shape {shape} is ambiguous: {told}")
     if shape and shape[-1] in (3, 7):
         return Stack(nearest_rotations(array.reshape(-1, shape[-1]), name), shape[:-1])
     raise InputError(
-        f"{name}: an array of shape {shape}, not (3,), (7,), (3, 4) or (4, 4), "
+        f"{name}: an array of shape {shape}, not (3,), (7,), (3, 3), (3, 4) or (4, 4), "
         "nor a row of that for each query"
     )
+
+
+def _numbers_of_poses(given: Sequence[Any], name: str) -> Any:
+    """Converts a list of poses, or a pair of positions and quaternions, to numbers."""
+    if _is_pair(given, 1):
+        position, quaternion = (_arrays.floats(part, name) for part in given)
+        axes = np.broadcast_shapes(position.shape[:-1], quaternion.shape[:-1])
+        parts = (np.broadcast_to(part, (*axes, part.shape[-1])) for part in (position, quaternion))
+        return np.concatenate(list(parts), axis=-1)
+    if all(_is_pair(each, 0) for each in given):
+        return np.array([np.concatenate(each) for each in given])
+    if any(hasattr(each, "as_matrix") for each in given):
+        return np.array([Pose(each).as_matrix() for each in given])
+    return given
+
+
+def _is_pair(given: Any, stacked: int) -> bool:
+    """Checks for a position and a quaternion, or with ``stacked`` for arrays of them."""
+    if not isinstance(given, (list, tuple)) or len(given) != 2:
+        return False
+    try:
+        position, quaternion = (np.shape(part) for part in given)
+    except ValueError:
+        return False
+    few = stacked or len(position) == len(quaternion) == 1
+    return bool(few) and position[-1:] == (3,) and quaternion[-1:] == (4,)
+
+
+def is_rotation(matrix: Floats) -> bool:
+    """Checks whether a matrix is a rotation, up to few digits."""
+    gram = np.nan_to_num(matrix) @ np.nan_to_num(matrix).T
+    near = np.abs(gram - np.eye(3)).max() <= FEW_DIGITS
+    return bool(near and np.linalg.det(np.nan_to_num(matrix)) > 0)
 
 
 #: Range of defects of a rotation that is treated as one with few digits.

@@ -1,4 +1,4 @@
-"""First contacts on many joint paths of a robot, as columns."""
+"""Robots on joint paths: their links and bodies that first meet, single and in rows."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,9 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from colltrans import _colltrans
 from colltrans._colltrans import ConvexPolyhedron, PathContact, Robot, Solid
-from colltrans.columns import TimeColumns
 from colltrans.errors import InputError
 from colltrans.queries import Floats, Shape, checked_threads
+from colltrans.table import TimeColumns
+
+__all__ = ["PathColumns", "PathContact", "Robot", "path_many"]
 
 #: Rows of joint values, or the name of a file with such rows.
 Path: TypeAlias = ArrayLike | str | PathLike[str]
@@ -77,7 +79,8 @@ class PathColumns(TimeColumns[PathContact]):
     ----------
     lower, upper : ndarray of shape (N,)
         Proven bounds of the times of first contacts: no two bodies meet before the first one, and
-        two meet at the second one.
+        two meet at the second one. The first one is the end of the path if none meet. The second
+        one is infinite if none meet or no contact is proven.
     row : ndarray of int64, shape (N,)
         The row before the contact; -1 without a contact.
     share : ndarray of shape (N,)
@@ -142,7 +145,8 @@ def path_many(
     Examples
     --------
     >>> import numpy as np
-    >>> from colltrans import Robot, path_many, read
+    >>> from colltrans import Robot, read
+    >>> from colltrans.robots import path_many
     >>> arm, wire = Robot.read("data/arm.urdf"), read("data/wire.obj")
     >>> turns = np.linspace(-0.4, 1.2, 9)
     >>> paths = [[[-0.6, 0.0, 0.1], [angle, 0.5, 0.1]] for angle in turns]

@@ -10,9 +10,9 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from colltrans.columns import FEATURES, Answer_co, Table
 from colltrans.outcomes import Outcomes
 from colltrans.queries import Queries, checked_threads, cores
+from colltrans.table import FEATURES, Answer_co, Table
 
 #: The columns with three numbers in a row.
 VECTORS = ("normal", "point", "direction")
@@ -45,7 +45,7 @@ class RowColumns(Table[Answer_co]):
                 if values.get(name) is not None:
                     column[i] = values[name]
             for name, column in corners.items():
-                if feature := getattr(getattr(found, "contact", None), name, None):
+                if feature := getattr(getattr(found, "contact", found), name, None):
                     vertices = feature.vertices[:3]
                     column[i, : len(vertices)] = vertices
             codes[i] = cls._outcomes.index(values["outcome"])

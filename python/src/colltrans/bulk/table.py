@@ -12,13 +12,13 @@ import pyarrow.compute as pc
 from colltrans.bulk.bodies import Bodies, doubled_name, texts_of
 from colltrans.bulk.lines import REFUSED
 from colltrans.bulk.reads import EVERYTHING, OF_CONVEX, OF_SOLIDS, SCREWS, SIDES, Reads
-from colltrans.columns import Table
-from colltrans.directions import free_directions_many
 from colltrans.errors import ColltransError, InputError, RoundedPoseWarning, as_error
 from colltrans.many import cast_many, clearance_many, contact_range_many
 from colltrans.motions import motion_clearance_many, motion_many
 from colltrans.pairs import depth_many, distance_many, within_many
+from colltrans.removal import free_directions_many
 from colltrans.solids import SolidColumns, solid_casts
+from colltrans.table import Table
 
 QUESTIONS: dict[str, Any] = {
     "contact": cast_many,

@@ -1,13 +1,22 @@
-"""Free directions of many pairs of bodies, as columns."""
+"""How one body leaves another: all free directions, and paths of several moves."""
 
 from dataclasses import dataclass
 from typing import Any
 
 from numpy.typing import ArrayLike
 
-from colltrans._colltrans import FreeDirections, free_directions
+from colltrans._colltrans import FreeDirections, WaysOut, free_directions, ways_out
 from colltrans.queries import AnyBodies, Floats, Poses, column, queries_of
 from colltrans.rows import RowColumns
+
+__all__ = [
+    "FreeColumns",
+    "FreeDirections",
+    "WaysOut",
+    "free_directions",
+    "free_directions_many",
+    "ways_out",
+]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -85,7 +94,8 @@ def free_directions_many(
 
     Examples
     --------
-    >>> from colltrans import ConvexPolyhedron, free_directions_many
+    >>> from colltrans import ConvexPolyhedron
+    >>> from colltrans.removal import free_directions_many
     >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     >>> columns = free_directions_many(cube, cube, moving_pose=[[0, 0, 1], [1, 1, 1], [0, 0, 0.5]])
     >>> columns

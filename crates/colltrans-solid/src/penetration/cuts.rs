@@ -425,9 +425,7 @@ impl Cell {
 
     /// Returns a point of the interior.
     pub(super) fn interior_point(&self, unit: i32) -> Option<Vertex> {
-        let size = |[a, b, c, d]: &[&Vertex; 4]| {
-            (b.near - a.near).dot((c.near - a.near).cross(d.near - a.near))
-        };
+        let size = |corners: &[&Vertex; 4]| near_six_volumes(*corners);
         let largest = self.tetrahedra().max_by(|p, q| size(p).total_cmp(&size(q)))?;
         Some(Vertex::mean(largest, unit))
     }
@@ -447,10 +445,7 @@ impl Cell {
 
     /// Returns the volume of the rounded vertices, without a bound of its error.
     pub(super) fn near_volume(&self) -> f64 {
-        let six = |[a, b, c, d]: [&Vertex; 4]| {
-            (b.near - a.near).dot((c.near - a.near).cross(d.near - a.near))
-        };
-        self.tetrahedra().map(six).sum::<f64>().max(0.0) / 6.0
+        self.tetrahedra().map(near_six_volumes).sum::<f64>().max(0.0) / 6.0
     }
 
     /// Iterates over the vertices, each of which occurs several times.
@@ -472,6 +467,11 @@ impl Cell {
         let mut all = self.vertices().map(|at| &**at);
         all.find(|at| face.plane.side(at) != Ordering::Equal)
     }
+}
+
+/// Returns six times the volume of a tetrahedron with the rounded corners.
+fn near_six_volumes([a, b, c, d]: [&Vertex; 4]) -> f64 {
+    (b.near - a.near).dot((c.near - a.near).cross(d.near - a.near))
 }
 
 /// Returns bounds of six times the volume of a tetrahedron, which is not negative.

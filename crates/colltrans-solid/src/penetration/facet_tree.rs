@@ -24,7 +24,7 @@ impl Boxed for Item {
 
 struct Node {
     bounds: Aabb,
-    /// Node at which a traversal that leaves out this one and its children goes on.
+    /// Node at which a traversal continues that leaves out this one and its children.
     next: u32,
     /// The facet, if the node is a single one.
     facet: Option<u32>,

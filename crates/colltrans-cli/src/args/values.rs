@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{Pose, Solver, cta};
+use colltrans_assembly::plan::PlanOptions;
 
 /// Parses a direction: three numbers, or the name of an axis.
 pub(crate) fn direction(text: &str) -> Result<DVec3, String> {
@@ -285,9 +286,10 @@ const MAX_SAMPLES: usize = 655_362;
 
 /// Rejects the removed option `--legs`.
 pub(crate) fn removed_legs(text: &str) -> Result<u32, String> {
+    let default = PlanOptions::DEFAULT_EFFORT;
     Err(format!(
         "the number of moves has no limit any more; give --effort N instead of --legs {text}: the work of each \
-         search, 3 by default, 0 for single moves only"
+         search, {default} by default, 0 for single moves only"
     ))
 }
 

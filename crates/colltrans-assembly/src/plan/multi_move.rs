@@ -11,7 +11,8 @@
 //! ([`Bodies::path_relation`]). The search deepens by itself until its [work](PlanOptions::effort) is used.
 
 use colltrans::removal::path::{
-    RemovalOptions, RemovalPath, RemovalScene, RemovalSearch, SearchWork, large_facet_axes,
+    MAX_BODIES, RemovalOptions, RemovalPath, RemovalScene, RemovalSearch, SearchWork,
+    large_facet_axes,
 };
 use colltrans::{Placed, Pose, Solid, removal::directions::FreeError};
 use glam::DVec3;
@@ -29,8 +30,6 @@ const MAX_AXES: usize = 13;
 /// Maximum number of repeated searches after a path violates the constraints. The violating parts are fixed in each
 /// repetition.
 const MAX_TRIES: usize = 3;
-/// Maximum number of parts of a group that is searched, the limit of [`RemovalScene::search`].
-const MAX_PARTS: usize = 127;
 /// Maximum number of legs of a path. The work ends a search before.
 const MAX_LEGS: usize = 64;
 /// Two axes are equal if their cross product is shorter than this.
@@ -208,7 +207,7 @@ fn unsupported_reason(
         Some(EFFORT_IS_ZERO)
     } else if bodies.fit().tolerance() < 0.0 {
         Some("the fit has a minimum gap")
-    } else if left.len() > MAX_PARTS {
+    } else if left.len() > MAX_BODIES {
         Some("there are more than 127 parts")
     } else {
         None

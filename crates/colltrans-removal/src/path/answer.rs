@@ -25,7 +25,7 @@ const SLACK_SHARE: f64 = 0.5;
 /// Bodies below this fraction of the largest one have the minimum moves of a body of this size.
 const SMALL_BODY: f64 = 0.125;
 /// Maximum number of bodies of a search.
-pub(super) const MAX_BODIES: usize = Group::BITS as usize - 1;
+pub const MAX_BODIES: usize = Group::BITS as usize - 1;
 
 /// Moves one after another. The last one has no end.
 #[derive(Debug, Clone, PartialEq)]

@@ -24,7 +24,7 @@ mod search;
 mod verify;
 mod walls;
 
-pub use answer::{Leg, RemovalPath, RemovalSearch};
+pub use answer::{Leg, MAX_BODIES, RemovalPath, RemovalSearch};
 pub use candidates::large_facet_axes;
 pub use cells::{Crossing, DisplacementCell, DisplacementGrid};
 pub use enclosed::NoRemovalPath;

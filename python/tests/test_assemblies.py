@@ -33,6 +33,7 @@ def test_the_plan_equals_that_of_the_command_line(cli: Path, gearbox: Assembly) 
     told = subprocess.run(command, check=True, capture_output=True, text=True)
     known = json.loads(told.stdout)
     plan = gearbox.plan()
+    assert repr(plan) == "Plan(10 steps, 6 parts stuck)"
     assert [step.parts for step in plan.steps] == [step["parts"] for step in known["plan"]]
     for step, its in zip(plan.steps, known["plan"], strict=True):
         assert list(step.direction) == its["direction"]

@@ -397,6 +397,10 @@ class Plan:
     _assembly: "Assembly | None" = field(default=None, repr=False, compare=False)
     _planned: "_colltrans.Planned | None" = field(default=None, repr=False, compare=False)
 
+    def __repr__(self) -> str:
+        stuck = sum(len(group.parts) for group in self.stuck)
+        return f"Plan({len(self.steps)} steps, {stuck or 'no'} parts stuck)"
+
     def displacements(self) -> dict[str, Floats]:
         """Returns the displacement of each moved part after all steps, without rotations."""
         found: dict[str, Floats] = {}

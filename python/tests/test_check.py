@@ -10,6 +10,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from fractions import Fraction
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -577,3 +578,29 @@ def test_faces_that_may_not_be_those_of_the_hull_are_left_unchecked() -> None:
         end |= {"lower": end["lower"] - 1e-9, "upper": None}
     report = check.check(json.dumps(file))
     assert report.partly and any("the faces of body 0" in line for line in report.unchecked)
+
+
+def test_facets_meet_exactly() -> None:
+    """Finds common points of facets in any position, and none at the smallest distance."""
+    tiny = Fraction(1, 2**80)
+
+    def facet(*corners: tuple[int, int, int | Fraction]) -> Any:
+        a, b, c = ((Fraction(x), Fraction(y), Fraction(z)) for x, y, z in corners)
+        return a, b, c
+
+    flat = facet((0, 0, 0), (4, 0, 0), (0, 4, 0))
+    for other, meets in [
+        (facet((1, 1, 0), (2, 1, 0), (1, 2, 0)), True),  # in the same plane, inside
+        (facet((4, 0, 0), (8, 0, 0), (8, 4, 0)), True),  # with a common corner
+        (facet((3, 3, 0), (8, 3, 0), (8, 8, 0)), False),  # in the same plane, apart
+        (facet((1, 1, -1), (1, 1, 1), (9, 9, 9)), True),  # through the inside
+        (facet((1, 1, 0), (1, 2, 1), (2, 1, 1)), True),  # a corner on the facet
+        (facet((1, 1, tiny), (1, 2, 1), (2, 1, 1)), False),
+        (facet((2, 2, -1), (2, 2, 1), (9, 9, 0)), True),  # at an edge
+        (facet((3, 2, -1), (3, 2, 1), (9, 9, 0)), False),
+        (facet((1, 1, 1), (2, 1, 1), (1, 2, 1)), False),  # parallel
+        (facet((1, 1, 0), (1, 1, 0), (1, 1, 0)), False),  # without an area: not decided
+    ]:
+        for f in (flat, (flat[1], flat[2], flat[0])):
+            assert check.do_facets_meet(f, other) == meets
+            assert check.do_facets_meet(other, f) == meets

@@ -1377,12 +1377,55 @@ def check_solid_near(near: Any) -> None:
     number(claim["distance"])
 
 
+def surface_of(body: Body, facets: list[Facet]) -> list[Triangle]:
+    """Returns facets of a body in the world."""
+    placed = [body.at(k) for k in range(len(body.points))]
+    return [(placed[a], placed[b], placed[c]) for a, b, c in facets]
+
+
+def do_facets_meet(f: Triangle, g: Triangle) -> bool:
+    """Checks whether two facets with an area have a point in common.
+
+    Otherwise a normal of a facet, a direction across two edges or a normal of an edge in the plane
+    of its facet separates them.
+    """
+    edges = [[minus(t[k - 2], t[k]) for k in range(3)] for t in (f, g)]
+    normals = [cross(own[0], own[1]) for own in edges]
+    if not all(any(normal) for normal in normals):
+        return False
+    across = [cross(a, b) for a, b in product(*edges)]
+    in_plane = [cross(n, e) for n, own in zip(normals, edges, strict=True) for e in own]
+    heights = ([[dot(way, v) for v in t] for t in (f, g)] for way in (*normals, *across, *in_plane))
+    return all(min(p) <= max(q) and min(q) <= max(p) for p, q in heights)
+
+
+def has_common_point(moving: Body, fixed: Body, meeting: Any) -> bool:
+    """Checks whether two facets meet, or a corner of a facet is inside the other body.
+
+    The claims of the library may be about rounded facets. Such a claim need not hold exactly.
+    """
+    kind, where = next(iter(meeting.items()))
+    named = zip((moving, fixed), where if kind == "facets" else [where] * 2, strict=True)
+    facets = [body.facet(k) if k < len(body.facets) else None for body, k in named]
+    if kind == "facets":
+        f, g = facets
+        return f is not None and g is not None and do_facets_meet(f, g)
+    inner = facets[0 if kind == "moving_inside" else 1]
+    outer = fixed if kind == "moving_inside" else moving
+    with suppress(RefusedError):
+        return inner is not None and winds(inner[0], surface_of(outer, outer.shape.closed())) > 0
+    return False
+
+
 def solid_near(moving: Body, fixed: Body, near: Any, report: Report) -> None:
     """Checks two points of solids, by the weights of the corners of two facets."""
     check_solid_near(near)
     if "points" not in near:
-        report.partly = True
-        report.unchecked.append("that the bodies have a point in common")
+        if has_common_point(moving, fixed, near["meeting"]):
+            report.holds.append("the bodies have a point in common")
+        else:
+            report.partly = True
+            report.unchecked.append("that the bodies have a point in common")
         return
     near = near["points"]
     named = zip((moving, fixed), listed(near["triangles"], 2), strict=True)
@@ -1392,12 +1435,6 @@ def solid_near(moving: Body, fixed: Body, near: Any, report: Report) -> None:
     if upper < 0 or not is_within(p, q, upper + radii(moving, fixed)):
         raise RefusedError(f"the points do not prove a distance of at most {float(upper)!r}")
     report.holds.append(f"the bodies are at most {float(upper)!r} apart")
-
-
-def surface_of(body: Body, facets: list[Facet]) -> list[Triangle]:
-    """Returns facets of a body in the world."""
-    placed = [body.at(k) for k in range(len(body.points))]
-    return [(placed[a], placed[b], placed[c]) for a, b, c in facets]
 
 
 def are_surfaces_apart(p: list[Triangle], q: list[Triangle], length: Fraction) -> bool | None:
@@ -1680,9 +1717,11 @@ def side_of(plane: Plane4, v: Point4) -> int:
 
 def cut_ring(ring: Ring, plane: Plane4) -> list[Ring | None]:
     """Returns the parts of a convex polygon behind a plane and in front of it, None for no part."""
-    sides = [side_of(plane, v) for v in ring]
-    if min(sides) >= 0 or max(sides) <= 0:
-        return [ring if min(sides) < 0 else None, ring if max(sides) > 0 else None]
+    p, q, r, offset = plane
+    sides = [p * x + q * y + r * z + offset * w for x, y, z, w in ring]
+    low, high = min(sides), max(sides)
+    if low >= 0 or high <= 0:
+        return [ring if low < 0 else None, ring if high > 0 else None]
     parts: list[Ring] = [[], []]
     for k, (v, s) in enumerate(zip(ring, sides, strict=True)):
         if s <= 0:
@@ -1733,11 +1772,15 @@ class Polytope:
             if len(lid) < 3 or len(lid) != len(after):
                 raise RefusedError("a cell of a common part does not close up")
             kept.append(lid)
-        inner = []
-        for k in range(2):
-            split = [[cut_ring(ring, plane)[k] for ring in self.facets[body]] for body in range(2)]
-            inner.append(tuple([ring for ring in part if ring is not None] for part in split))
-        low, high = ((x, y) for x, y in inner)
+        low: tuple[list[Ring], list[Ring]] = ([], [])
+        high: tuple[list[Ring], list[Ring]] = ([], [])
+        for body, rings in enumerate(self.facets):
+            for ring in rings:
+                behind, before = cut_ring(ring, plane)
+                if behind is not None:
+                    low[body].append(behind)
+                if before is not None:
+                    high[body].append(before)
         return (
             Polytope(faces[0], low, self.depth + 1, self.inside),
             Polytope(faces[1], high, self.depth + 1, self.inside),
@@ -1776,37 +1819,100 @@ class Polytope:
         return lowest_terms((x, y, z, 4 * weight))
 
 
-def winding_of(at: Point4, facets: list[Corners]) -> int:
-    """Returns the winding number of a surface around a point that is not on it."""
-    for k in range(1, 60):
-        way, count, sure = (3721, 61 * k, k * k), 0, True
-        for triangle in facets:
-            a, b, c = (
-                (
-                    v[0] * at[3] - at[0],
-                    v[1] * at[3] - at[1],
-                    v[2] * at[3] - at[2],
-                )
-                for v in triangle
+def crossings(at: Point4, way: Whole, facets: Iterable[Corners]) -> int | None:
+    """Counts how often a ray leaves through facets, less how often it enters.
+
+    Returns None if the ray may meet an edge.
+    """
+    count = 0
+    for triangle in facets:
+        a, b, c = (
+            (
+                v[0] * at[3] - at[0],
+                v[1] * at[3] - at[1],
+                v[2] * at[3] - at[2],
             )
-            sides = [dot(cross(u, v), way) for u, v in ((a, b), (b, c), (c, a))]
-            if min(sides) < 0 < max(sides):
+            for v in triangle
+        )
+        sides = [dot(cross(u, v), way) for u, v in ((a, b), (b, c), (c, a))]
+        if min(sides) < 0 < max(sides):
+            continue
+        volume = dot(cross(a, b), c)
+        if volume == 0:
+            # A ray in the plane of a facet with an area may meet an edge of the facet.
+            normal = cross(minus(b, a), minus(c, a))
+            if any(normal) and dot(normal, way) == 0:
+                return None
+        elif 0 in sides:
+            return None
+        elif (volume > 0) == (sides[0] > 0):
+            count += 1 if sides[0] > 0 else -1
+    return count
+
+
+class Sight:
+    """The facets of a surface as seen along a direction, in a binary tree of boxes."""
+
+    def __init__(self, way: Whole, facets: list[Corners]) -> None:
+        #: Two coordinates across the direction, and one along it.
+        self.forms = ((way[1], -way[0], 0), (way[2], 0, -way[0]), way)
+        seen = [(self.box(facet), facet) for facet in facets]
+        self.root = self.node(seen)
+
+    def box(self, facet: Corners) -> tuple[int, ...]:
+        """Returns the highest coordinates of a facet, and the lowest ones across the direction."""
+        heights = [[dot(form, v) for v in facet] for form in self.forms]
+        return (*map(max, heights), min(heights[0]), min(heights[1]))
+
+    def node(self, seen: list[tuple[tuple[int, ...], Corners]]) -> tuple[Any, ...]:
+        """Returns a node: its box, and its facets or both parts."""
+        highest = [max(box[k] for box, _ in seen) for k in range(3)]
+        lowest = [min(box[k] for box, _ in seen) for k in (3, 4)]
+        bounds = (*highest, *lowest)
+        if len(seen) <= 4:
+            return bounds, [facet for _, facet in seen], None
+        k = 0 if highest[0] - lowest[0] > highest[1] - lowest[1] else 1
+        seen.sort(key=lambda entry: entry[0][k] + entry[0][k + 3])
+        half = len(seen) // 2
+        return bounds, self.node(seen[:half]), self.node(seen[half:])
+
+    def met(self, at: Point4) -> Iterator[Corners]:
+        """Yields all facets that the ray from a point meets, and some others."""
+        x, y, z = (dot(form, at[:3]) for form in self.forms)
+        weight, stack = at[3], [self.root]
+        while stack:
+            (right, upper, ahead, left, lower), first, second = stack.pop()
+            if not (
+                left * weight <= x <= right * weight
+                and lower * weight <= y <= upper * weight
+                and z <= ahead * weight
+            ):
                 continue
-            volume = dot(cross(a, b), c)
-            if volume == 0:
-                # A ray in the plane of a facet with an area may meet an edge of the facet.
-                normal = cross(minus(b, a), minus(c, a))
-                if any(normal) and dot(normal, way) == 0:
-                    sure = False
-                    break
-            elif 0 in sides:
-                sure = False
-                break
-            elif (volume > 0) == (sides[0] > 0):
-                count += 1 if sides[0] > 0 else -1
-        if sure:
-            return count
-    raise RefusedError("no ray decides whether a point is inside")
+            if second is None:
+                yield from first
+            else:
+                stack += [first, second]
+
+
+class Surface:
+    """A surface, and its winding numbers around points."""
+
+    def __init__(self, facets: list[Corners]) -> None:
+        self.facets = facets
+        self.sights: dict[Whole, Sight] = {}
+
+    def winding(self, at: Point4) -> int:
+        """Returns the winding number around a point that is not on the surface."""
+        if not self.facets:
+            return 0
+        for k in range(1, 60):
+            way = (3721, 61 * k, k * k)
+            if way not in self.sights:
+                self.sights[way] = Sight(way, self.facets)
+            count = crossings(at, way, self.sights[way].met(at))
+            if count is not None:
+                return count
+        raise RefusedError("no ray decides whether a point is inside")
 
 
 def has_point(triangle: Corners, at: Point4) -> bool:
@@ -1894,11 +2000,12 @@ def check_outwards(shape: Shape) -> None:
                 continue
             corners = [(*v, 1) for v in {v for facet in part for v in facet}]
             others = [facet for other in parts if other is not part for facet in other]
+            rest = Surface(others)
             work += 2 * len(corners) * len(others)
             if work > MAX_CORNERS:
                 raise TooLongError
             free = [at for at in corners if not any(has_point(facet, at) for facet in others)]
-            if not free or any(winding_of(at, others) <= 0 for at in free):
+            if not free or any(rest.winding(at) <= 0 for at in free):
                 raise RefusedError("a shell is inside out; facets have to point outwards")
 
 
@@ -1911,7 +2018,7 @@ class Common:
         corners, self.unit_of = in_units(placed)
         #: The facets with an area by their numbers, and those of each piece.
         self.facets: list[dict[int, Corners]] = []
-        self.pieces: list[list[list[Corners]]] = []
+        self.pieces: list[list[Surface]] = []
         for body, at in zip(self.bodies, corners, strict=True):
             named: dict[int, Corners] = {}
             pieces: dict[int, list[Corners]] = {}
@@ -1924,7 +2031,7 @@ class Common:
                     named[k] = facet
                     pieces.setdefault(shape.piece[k], []).append(facet)
             self.facets.append(named)
-            self.pieces.append(list(pieces.values()))
+            self.pieces.append([Surface(facets) for facets in pieces.values()])
         bits = max(x.bit_length() for at in corners for v in at for x in v)
         #: Factor by which long numbers take longer.
         self.weight = (1 + bits // 512) ** 2
@@ -1951,7 +2058,7 @@ class Common:
 
     def is_inside(self, body: int, at: Point4) -> bool:
         """Checks whether a point that is on no facet is inside one of the pieces of a body."""
-        windings = [winding_of(at, facets) for facets in self.pieces[body]]
+        windings = [surface.winding(at) for surface in self.pieces[body]]
         if min(windings, default=0) < 0:
             raise RefusedError("a piece has a negative winding number in a cell")
         return max(windings, default=0) > 0
@@ -4806,26 +4913,33 @@ def check(text: str) -> Report:
     return report
 
 
-def main(words: Sequence[str] | None = None) -> int:
-    words = sys.argv[1:] if words is None else words
-    if len(words) != 1 or words[0].startswith("-"):
-        print(__doc__ if words == ["--help"] else "usage: python -m colltrans.check PROOF.json")
-        return 0 if words == ["--help"] else 2
+def check_file(path: str, before: str) -> int:
+    """Checks a file and prints the result, each line after a text. Returns the exit code."""
     try:
-        report = check(Path(words[0]).read_text(encoding="utf-8"))
+        report = check(Path(path).read_text(encoding="utf-8"))
     except (OSError, NoProofError, UnicodeDecodeError) as error:
-        print(f"{words[0]}: not a proof: {error}", file=sys.stderr)
+        print(f"{path}: not a proof: {error}", file=sys.stderr)
         return 3
     except RefusedError as error:
-        print(f"{words[0]}: the proof does not hold: {error}", file=sys.stderr)
+        print(f"{path}: the proof does not hold: {error}", file=sys.stderr)
         return 6
     for line in report.holds:
-        print(f"holds: {line}")
+        print(f"{before}holds: {line}")
     for line in report.unchecked:
-        print(f"not checked: {line}")
+        print(f"{before}not checked: {line}")
     if not report.holds:
         return 1
     return 7 if report.partly else 0
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    words = sys.argv[1:] if words is None else words
+    if not words or any(word.startswith("-") for word in words):
+        print(__doc__ if words == ["--help"] else "usage: python -m colltrans.check PROOF.json ...")
+        return 0 if words == ["--help"] else 2
+    codes = {check_file(word, f"{word}: " if len(words) > 1 else "") for word in words}
+    # Of several files, the most important result counts.
+    return next(code for code in (6, 3, 1, 7, 0) if code in codes)
 
 
 if __name__ == "__main__":

@@ -523,10 +523,25 @@ fn common_parts_with_hostile_trees_are_refused() {
         json!({ "x": null }),
         json!({ "x": 1.0, "y": 1.0 }),
         json!("inside"),
+        json!("x"),
+        json!({ "both": null }),
+        json!({ "undecided": {} }),
         json!(null),
         json!([]),
     ] {
         assert_refused(&cut(hostile), &mut fractions);
+    }
+    assert_refused(&with(json!([{ "both": null }])), &mut fractions);
+    for (relation, holds) in [
+        (json!("moving_contained"), true),
+        (json!({ "moving_contained": null }), false),
+        (json!("crossing"), false),
+        (json!({ "crossing": null }), false),
+    ] {
+        let mut file = file.clone();
+        file["statement"]["solid_common_part"]["relation"] = relation;
+        let check = if holds { assert_holds } else { assert_refused };
+        check(&file, &mut fractions);
     }
     let chain = |count: usize| {
         let cuts = (1..=count).map(|k| json!({ "x": 4.0 - 4.0 * k as f64 / (count + 1) as f64 }));

@@ -66,7 +66,7 @@ pub struct CommonPartCertificate {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case", deny_unknown_fields)
+    serde(rename_all = "snake_case", try_from = "RelationText")
 )]
 #[non_exhaustive]
 pub enum ProvenRelation {
@@ -91,7 +91,7 @@ pub enum ProvenRelation {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
+    serde(rename_all = "snake_case", try_from = "NodeText")
 )]
 #[non_exhaustive]
 pub enum CommonNode {
@@ -114,6 +114,81 @@ pub enum CommonNode {
     OutsideFixed,
     /// A cell without a claim.
     Undecided,
+}
+
+/// A node or a relation in a file: a name, or an object with one field. `{"both": null}` is not a name.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(untagged, expecting = "expected a name, or an object with one known field")]
+enum NameOr<T> {
+    Name(String),
+    Object(T),
+}
+
+/// A cut in a file.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum CutText {
+    X(f64),
+    Y(f64),
+    Z(f64),
+    Moving(u32),
+    Fixed(u32),
+}
+
+/// The relation of bodies that cross, in a file.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+enum CrossingText {
+    Crossing { only_moving: DVec3, only_fixed: DVec3 },
+}
+
+#[cfg(feature = "serde")]
+type NodeText = NameOr<CutText>;
+#[cfg(feature = "serde")]
+type RelationText = NameOr<CrossingText>;
+
+#[cfg(feature = "serde")]
+impl TryFrom<NodeText> for CommonNode {
+    type Error = String;
+
+    fn try_from(text: NodeText) -> Result<Self, String> {
+        Ok(match text {
+            NameOr::Object(CutText::X(at)) => Self::X(at),
+            NameOr::Object(CutText::Y(at)) => Self::Y(at),
+            NameOr::Object(CutText::Z(at)) => Self::Z(at),
+            NameOr::Object(CutText::Moving(triangle)) => Self::Moving(triangle),
+            NameOr::Object(CutText::Fixed(triangle)) => Self::Fixed(triangle),
+            NameOr::Name(name) => match &*name {
+                "both" => Self::Both,
+                "outside_moving" => Self::OutsideMoving,
+                "outside_fixed" => Self::OutsideFixed,
+                "undecided" => Self::Undecided,
+                _ => return Err(format!("{name:?} is not a cell of a common part")),
+            },
+        })
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RelationText> for ProvenRelation {
+    type Error = String;
+
+    fn try_from(text: RelationText) -> Result<Self, String> {
+        Ok(match text {
+            NameOr::Object(CrossingText::Crossing { only_moving, only_fixed }) => {
+                Self::Crossing { only_moving, only_fixed }
+            }
+            NameOr::Name(name) => match &*name {
+                "disjoint" => Self::Disjoint,
+                "moving_contained" => Self::MovingContained,
+                "fixed_contained" => Self::FixedContained,
+                _ => return Err(format!("{name:?} is not a relation of two bodies")),
+            },
+        })
+    }
 }
 
 /// Reason why a proof of a common part is rejected.
@@ -224,8 +299,6 @@ pub(super) struct ProvenCells {
     both: bool,
     outside: [bool; 2],
     undecided: bool,
-    /// Cells that are not outside a body, with their nodes.
-    pub(super) common: Vec<(usize, Cell)>,
 }
 
 /// Work of a verification so far.
@@ -247,6 +320,11 @@ impl Work {
     /// Adds the work of a cell; `None` if the sum exceeds the limit.
     pub(super) fn add_cell(&mut self, cell: &Cell) -> Option<()> {
         self.add(self.factor * (WORK_OF_CELL + cell.size()))
+    }
+
+    /// Adds the work of finding out whether a point is inside each body; `None` if the sum exceeds the limit.
+    pub(super) fn add_point(&mut self) -> Option<()> {
+        self.add(self.per_side[0] + self.per_side[1])
     }
 
     fn add(&mut self, work: u64) -> Option<()> {
@@ -352,20 +430,18 @@ impl CommonNode {
     }
 }
 
-/// Walks through a tree, and returns what its cells prove.
+/// Walks through a tree depth first, and returns what its cells prove. Passes each cell that is not outside a body, with
+/// the position of its node, to `visit`. Cells are dropped after their visit, so that memory is that of one path of the
+/// tree.
 pub(super) fn proven_cells(
     exact: &ExactPair,
     root: Cell,
     nodes: &[CommonNode],
+    mut visit: impl FnMut(usize, Cell) -> Result<(), CommonPartError>,
 ) -> Result<ProvenCells, CommonPartError> {
     let mut work = Work::new(exact, MAX_WORK);
-    let mut proven = ProvenCells {
-        volume: [0.0; 2],
-        both: false,
-        outside: [false; 2],
-        undecided: false,
-        common: Vec::new(),
-    };
+    let mut proven =
+        ProvenCells { volume: [0.0; 2], both: false, outside: [false; 2], undecided: false };
     let mut cells = 0_u32;
     let mut open = vec![(root, 0)];
     for (node, &kind) in nodes.iter().enumerate() {
@@ -415,7 +491,7 @@ pub(super) fn proven_cells(
                 }
                 proven.volume[1] += high;
                 cells += 1;
-                proven.common.push((node, cell));
+                visit(node, cell)?;
             }
         }
     }
@@ -437,14 +513,15 @@ pub(super) fn proves_relation(
     let contained =
         |body: usize| contains[body] && cells.both && !cells.undecided && !cells.outside[1 - body];
     match relation {
-        ProvenRelation::Disjoint => cells.common.is_empty(),
+        ProvenRelation::Disjoint => !cells.both && !cells.undecided,
         ProvenRelation::Crossing { .. } => cells.both || has_point,
         ProvenRelation::MovingContained => contained(0),
         ProvenRelation::FixedContained => contained(1),
     }
 }
 
-/// Checks whether a point is strictly inside or outside each body, as claimed.
+/// Checks whether a point is strictly inside or outside each body, as claimed. Its cost is the number of facets of both
+/// bodies.
 pub(super) fn has_sides(exact: &ExactPair, at: DVec3, inside: [bool; 2]) -> bool {
     let point = exact.point(at);
     [0, 1].iter().all(|body| {
@@ -463,26 +540,13 @@ fn check_coordinates(field: &'static str, at: DVec3) -> Result<(), CommonPartErr
     }
 }
 
-/// Checks that a box contains the cells that may have a part in common.
-pub(super) fn check_bounds(
-    exact: &ExactPair,
-    bounds: Option<&Aabb>,
-    cells: &[(usize, Cell)],
-) -> Result<(), CommonPartError> {
-    let Some((first, _)) = cells.first() else { return Ok(()) };
-    let planes = bounds.and_then(|bounds| box_planes(exact, bounds));
-    let planes = planes.ok_or(CommonPartError::Bounds { node: *first })?;
-    let is_within = |cell: &Cell| {
-        cell.vertices().all(|at| {
-            planes.iter().all(|[low, high]| {
-                low.side(at) != Ordering::Less && high.side(at) != Ordering::Greater
-            })
-        })
-    };
-    match cells.iter().find(|(_, cell)| !is_within(cell)) {
-        Some((node, _)) => Err(CommonPartError::Bounds { node: *node }),
-        None => Ok(()),
-    }
+/// Checks whether a cell is within the sides of a box.
+fn is_within(planes: &[[Rc<Plane>; 2]; 3], cell: &Cell) -> bool {
+    cell.vertices().all(|at| {
+        planes
+            .iter()
+            .all(|[low, high]| low.side(at) != Ordering::Less && high.side(at) != Ordering::Greater)
+    })
 }
 
 /// Verifies a proof. Returns the difference of the bounds of the volume.
@@ -518,12 +582,16 @@ pub(super) fn verify_common_part(
         }
     }
     let (cell, contains) = root_cell(&exact, root)?;
-    let cells = proven_cells(&exact, cell, nodes)?;
+    let planes = bounds.as_ref().and_then(|bounds| box_planes(&exact, bounds));
+    let check_bounds = |node: usize, cell: Cell| match &planes {
+        Some(planes) if is_within(planes, &cell) => Ok(()),
+        _ => Err(CommonPartError::Bounds { node }),
+    };
+    let cells = proven_cells(&exact, cell, nodes, check_bounds)?;
     if lower > cells.volume[0] || upper < cells.volume[1] {
         let (claimed, proven) = (*volume, cells.volume);
         return Err(CommonPartError::VolumeBounds { claimed, proven });
     }
-    check_bounds(&exact, bounds.as_ref(), &cells.common)?;
     match relation {
         Some(relation) if !proves_relation(&cells, contains, *relation, point.is_some()) => {
             Err(CommonPartError::Relation)

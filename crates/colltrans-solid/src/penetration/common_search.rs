@@ -16,7 +16,7 @@ use glam::DVec3;
 use super::common::VolumeOptions;
 use super::common_certificate::{
     CommonNode, CommonPartCertificate, CommonPartError, ProvenCells, ProvenRelation, Work,
-    bounds_body, check_bounds, decide_side, has_sides, proven_cells, proves_relation, root_cell,
+    bounds_body, decide_side, has_sides, proven_cells, proves_relation, root_cell,
     verify_common_part,
 };
 use super::cuts::{Cell, Vertex};
@@ -43,6 +43,9 @@ const WITNESS_FACETS: usize = 64;
 const HALVINGS: i32 = 24;
 /// Bits by which a side of a cell is longer than the grid of its cuts.
 const GRID_BITS: i32 = 6;
+
+/// Numbers of rounding errors by which the sides of a box are moved outwards, until it contains what it has to contain.
+const OUTWARDS: [f64; 5] = [0.0, 2.0, 8.0, 64.0, 4096.0];
 
 /// A cell that is not decided.
 struct Open {
@@ -105,14 +108,35 @@ pub(super) fn certified_common_part(
     let root = root_box(&exact);
     let (cell, contains) = root_cell(&exact, &root)?;
     let nodes = search(&exact, cell.clone(), options).in_order();
-    let cells = proven_cells(&exact, cell, &nodes)?;
-    let point = common_point(&exact, &cells, &nodes);
+    let (mut near, mut largest) = (Aabb::EMPTY, Vec::new());
+    let cells = proven_cells(&exact, cell, &nodes, |node, cell| {
+        for at in cell.vertices().map(|at| at.near) {
+            near = Aabb { low: near.low.min(at), high: near.high.max(at) };
+        }
+        if nodes[node] == CommonNode::Both {
+            keep_largest(&mut largest, cell);
+        }
+        Ok(())
+    })?;
+    let point = common_point(&exact, &largest);
     let relation = relation(&exact, &cells, contains, point.is_some());
-    let bounds = cell_bounds(&exact, &cells)?;
+    let is_empty = near.low.x > near.high.x;
     let volume = cells.volume;
-    let proof = CommonPartCertificate { volume, bounds, point, relation, root, nodes };
-    verify_common_part(pair, &proof)?;
-    Ok(proof)
+    let mut proof = CommonPartCertificate { volume, bounds: None, point, relation, root, nodes };
+    let mut verified = Ok(0.0);
+    for steps in OUTWARDS {
+        let corner = |of: DVec3, is_high: bool| {
+            let number = |axis: usize| moved_outwards(&exact, of[axis], axis, is_high, steps);
+            DVec3::from_array([number(0), number(1), number(2)])
+        };
+        let bounds = Aabb { low: corner(near.low, false), high: corner(near.high, true) };
+        proof.bounds = (!is_empty).then_some(bounds);
+        verified = verify_common_part(pair, &proof);
+        if !matches!(verified, Err(CommonPartError::Bounds { .. })) {
+            break;
+        }
+    }
+    verified.map(|_| proof)
 }
 
 /// Returns a number of the world that is at most, or at least, a rounded coordinate relative to the base point, by a
@@ -138,8 +162,7 @@ fn root_box(exact: &ExactPair) -> Aabb {
     let near = [common, boxes[0], boxes[1]].into_iter().find(is_thick).unwrap_or(unit);
     let side = |axis: usize, is_high: bool| {
         let at = if is_high { near.high[axis] } else { near.low[axis] };
-        let numbers = [0.0, 2.0, 8.0, 64.0, 4096.0];
-        let numbers = numbers.map(|steps| moved_outwards(exact, at, axis, is_high, steps));
+        let numbers = OUTWARDS.map(|steps| moved_outwards(exact, at, axis, is_high, steps));
         let bounds = |number: &f64| {
             exact.coordinate_plane(axis, *number).is_some_and(|plane| {
                 [0, 1].iter().any(|body| bounds_body(exact, *body, &plane, is_high))
@@ -324,20 +347,34 @@ fn in_world(exact: &ExactPair, at: DVec3) -> DVec3 {
     with_tiny_components_zeroed(exact.near_base + at)
 }
 
-/// Finds a point inside both bodies, in one of the cells inside both.
-fn common_point(exact: &ExactPair, cells: &ProvenCells, nodes: &[CommonNode]) -> Option<DVec3> {
-    let all = cells.common.iter().filter(|(node, _)| nodes[*node] == CommonNode::Both);
-    let mut all: Vec<(f64, &Cell)> = all.map(|(_, cell)| (cell.near_volume(), cell)).collect();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
-    all.iter().take(CANDIDATES).find_map(|(_, cell)| {
+/// Adds a cell to the [`CANDIDATES`] largest ones, which are sorted.
+fn keep_largest(largest: &mut Vec<(f64, Cell)>, cell: Cell) {
+    let volume = cell.near_volume();
+    let at = largest.partition_point(|(other, _)| *other >= volume);
+    if at < CANDIDATES {
+        largest.truncate(CANDIDATES - 1);
+        largest.insert(at, (volume, cell));
+    }
+}
+
+/// Finds a point inside both bodies, in one of some cells inside both.
+fn common_point(exact: &ExactPair, cells: &[(f64, Cell)]) -> Option<DVec3> {
+    cells.iter().find_map(|(_, cell)| {
         let point: Vertex = cell.interior_point(exact.unit)?;
         let at = in_world(exact, point.near);
         has_sides(exact, at, [true; 2]).then_some(at)
     })
 }
 
-/// Finds a point inside one body and outside the other one, below one of its facets.
-fn point_of_one(exact: &ExactPair, body: usize) -> Option<DVec3> {
+/// The search for a point exceeds the limit of its work.
+struct WorkDone;
+
+/// Finds a point inside one body and outside the other one, below one of its facets; `None` if none is found.
+fn point_of_one(
+    exact: &ExactPair,
+    body: usize,
+    work: &mut Work,
+) -> Result<Option<DVec3>, WorkDone> {
     let facets = &exact.bodies[body].facets;
     let far = {
         let corners = exact.bodies[body].corners().map(|corner| corner.near);
@@ -345,17 +382,22 @@ fn point_of_one(exact: &ExactPair, body: usize) -> Option<DVec3> {
     };
     let inside = [body == 0, body == 1];
     let step = facets.len().div_ceil(WITNESS_FACETS).max(1);
-    facets.iter().step_by(step).find_map(|facet| {
+    for facet in facets.iter().step_by(step) {
         let [a, b, c] = facet.corners.each_ref().map(|corner: &Rc<Vertex>| corner.near);
         let inwards = -facet.plane.near_normal().normalize_or_zero();
-        (2..HALVINGS).find_map(|k| {
+        for k in 2..HALVINGS {
+            work.add_point().ok_or(WorkDone)?;
             let at = in_world(exact, (a + b + c) / 3.0 + inwards * far * 0.5_f64.powi(k));
-            has_sides(exact, at, inside).then_some(at)
-        })
-    })
+            if has_sides(exact, at, inside) {
+                return Ok(Some(at));
+            }
+        }
+    }
+    Ok(None)
 }
 
-/// Finds the strongest relation that is proven.
+/// Finds the strongest relation that is proven. `None` if there is none, also if the points of one body alone are not
+/// found within the limit of the work.
 fn relation(
     exact: &ExactPair,
     cells: &ProvenCells,
@@ -372,31 +414,7 @@ fn relation(
     if !is_proven(&Crossing { only_moving, only_fixed }) {
         return None;
     }
-    let only_moving = point_of_one(exact, 0)?;
-    Some(Crossing { only_moving, only_fixed: point_of_one(exact, 1)? })
-}
-
-/// Returns the box of the cells that may have a part in common; `None` if there are none.
-fn cell_bounds(exact: &ExactPair, cells: &ProvenCells) -> Result<Option<Aabb>, CommonPartError> {
-    if cells.common.is_empty() {
-        return Ok(None);
-    }
-    let vertices = cells.common.iter().flat_map(|(_, cell)| cell.vertices());
-    let near = Aabb::from_points(vertices.map(|at| at.near));
-    let moved = |steps: f64| {
-        let corner = |of: DVec3, is_high: bool| {
-            let number = |axis: usize| moved_outwards(exact, of[axis], axis, is_high, steps);
-            DVec3::from_array([number(0), number(1), number(2)])
-        };
-        Aabb { low: corner(near.low, false), high: corner(near.high, true) }
-    };
-    let mut last = Ok(());
-    for steps in [0.0, 2.0, 8.0, 64.0, 4096.0] {
-        let bounds = moved(steps);
-        last = check_bounds(exact, Some(&bounds), &cells.common);
-        if last.is_ok() {
-            return Ok(Some(bounds));
-        }
-    }
-    last.map(|()| None)
+    let mut work = Work::new(exact, MAX_WORK);
+    let mut point = |body: usize| point_of_one(exact, body, &mut work).ok().flatten();
+    Some(Crossing { only_moving: point(0)?, only_fixed: point(1)? })
 }

@@ -325,4 +325,11 @@ fn rounded_bodies_and_long_proofs_are_refused() {
         CommonPartCertificate { nodes, ..proof.clone() }
     };
     assert!(pair.verify_common_part(&grid(1000)).is_ok());
+    // A verification holds the cells of one path of the tree.
+    let most_bytes = |proof: &CommonPartCertificate| {
+        let check = || assert!(pair.verify_common_part(proof).is_ok());
+        allocation_counter::measure(check).bytes_max
+    };
+    let [few, many] = [64, 1024].map(|count| most_bytes(&grid(count)));
+    assert!(few > 0 && many < 2 * few, "{few} {many}");
 }

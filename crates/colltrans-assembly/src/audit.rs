@@ -12,6 +12,7 @@
 //! Pairs with a role or tolerance of their own are meant to touch and have no clearance. Ignored and glued pairs are
 //! left out. Results do not depend on the number of threads. Memory is proportional to the number of reported pairs.
 
+mod proofs;
 mod tables;
 
 use std::cmp::Ordering;
@@ -31,6 +32,9 @@ use crate::part::Assembly;
 use crate::roles::PairTolerance;
 use crate::watch::{Stage, Watch};
 
+#[cfg(feature = "proofs")]
+pub use proofs::prove_pairs;
+pub use proofs::{PairProof, ProofClaim};
 pub use tables::{QUANTITIES, Quantity, audit_csv, audit_json};
 
 /// Maximum number of cells of a volume. Thin common parts of curved fits would take ten times more for 1 %.
@@ -265,9 +269,20 @@ pub struct AuditedPair {
     pub tolerance: f64,
     /// Whether the pair interferes, is contained, or is proven to be nearer than the clearance.
     pub is_violation: bool,
+    /// Whether each part has open shells, which have no inside: containment, depth and volume are those of its closed
+    /// shells alone.
+    pub has_open_shells: [bool; 2],
+    /// Proof files of the finding; empty before `prove_pairs`.
+    pub proofs: Vec<PairProof>,
 }
 
 impl AuditedPair {
+    /// Iterates over the parts with open shells.
+    pub fn open_parts(&self) -> impl Iterator<Item = usize> {
+        let parts = self.parts.into_iter().zip(self.has_open_shells);
+        parts.filter_map(|(part, is_open)| is_open.then_some(part))
+    }
+
     /// Compares by severity: violations first, the deepest interference, the deepest contained part, contacts, and the
     /// pair that lacks most of its clearance.
     fn cmp_severity(&self, other: &Self) -> Ordering {
@@ -415,7 +430,9 @@ pub fn examine_pair(
         PairFinding::Touching(found) | PairFinding::Apart(found) => found.distance[1] < clearance,
     };
     let tolerance = bodies.pair_tolerance(parts);
-    Ok(AuditedPair { parts, finding, clearance, tolerance, is_violation })
+    let has_open_shells = parts.map(|part| bodies.assembly().parts()[part].is_surface());
+    let proofs = Vec::new();
+    Ok(AuditedPair { parts, finding, clearance, tolerance, is_violation, has_open_shells, proofs })
 }
 
 /// Decides how two parts lie to each other.

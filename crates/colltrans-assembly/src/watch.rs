@@ -17,6 +17,8 @@ pub enum Stage {
     Plan,
     /// Removal maps.
     Map,
+    /// Proofs of the findings of an audit.
+    Proofs,
     /// Pictures of the findings of an audit.
     Pictures,
 }
@@ -30,6 +32,7 @@ impl Stage {
             Self::Rooms => "rooms",
             Self::Plan => "plan",
             Self::Map => "map",
+            Self::Proofs => "proofs",
             Self::Pictures => "pictures",
         }
     }

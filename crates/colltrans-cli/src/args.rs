@@ -125,7 +125,8 @@ pub(crate) enum Command {
     Batch(BatchArguments),
     /// Check a proof that --save-proof has written, without a search
     ///
-    /// Prints the proven statement about the bodies in the file in one line. Exit code 6 if the proof does not hold.
+    /// Prints the proven statement about the bodies in the file in one line. Exit code 6 if the proof does not hold. Of
+    /// several files, each line begins with the name of the file.
     #[command(after_help = fit_to_terminal(&[SEE_ALL]), after_long_help = fit_to_terminal(&[VERIFY_NOTES]))]
     Verify(VerifyArguments),
     /// Answer a saved query again
@@ -550,10 +551,10 @@ pub(crate) struct ReplayArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct VerifyArguments {
-    /// The saved proof
-    #[arg(value_name = "PROOF.json")]
-    pub(crate) proof: PathBuf,
-    /// Print the answer as one JSON object
+    /// The saved proofs
+    #[arg(value_name = "PROOF.json", required = true)]
+    pub(crate) proofs: Vec<PathBuf>,
+    /// Print the answer as one JSON object, a line for each proof
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -6,7 +6,9 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use colltrans_assembly::audit::{Audit, AuditCounts, AuditOptions, audit, audit_csv, audit_json};
+use colltrans_assembly::audit::{
+    Audit, AuditCounts, AuditOptions, AuditedPair, audit, audit_csv, audit_json, prove_pairs,
+};
 use colltrans_assembly::report::bcf::{MAX_TOPICS, bcf_file, metres_per_unit};
 use colltrans_assembly::report::clashes::clashes_page;
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
@@ -17,8 +19,11 @@ use crate::assembly::{in_thread_pool, read_assembly, show_stages, stage_bar};
 use crate::failure::{Code, Failure, note, print, print_json};
 use crate::inputs::{check_distinct_outputs, check_output_path, has_extension};
 use crate::numbers::{count_text, length_down, length_up};
-use crate::outputs::PendingFile;
+use crate::outputs::{self, PendingFile};
 use crate::terminal::escape_line;
+
+/// Maximum number of notes about missing proofs.
+const MAX_NOTES: usize = 10;
 
 pub(crate) fn run(arguments: &AuditArguments) -> Result<(), Failure> {
     in_thread_pool(arguments.threads, || audit_in_pool(arguments))
@@ -40,11 +45,17 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
         check_unit(path, &assembly)?;
     }
     // Opened first, so that a path that cannot be written is found before the work.
+    if let Some(folder) = &arguments.proofs {
+        create_empty_folder(folder)?;
+    }
     let [csv, report, bcf] = paths.map(|path| path.as_deref().map(PendingFile::create).transpose());
     let files = OutputFiles { csv: csv?, report: report?, bcf: bcf?.zip(created) };
     let fit = arguments.tolerance.map_or_else(|| Fit::default_for(&assembly), Fit::Tolerance);
     let bodies = Bodies::new(&assembly, fit)?;
-    let found = with_bar(|watch| audit(&bodies, &options, watch))?;
+    let mut found = with_bar(|watch| audit(&bodies, &options, watch))?;
+    if let Some(folder) = &arguments.proofs {
+        with_bar(|watch| write_proofs(&bodies, &options, &mut found, folder, watch))?;
+    }
     for text in assembly.notes() {
         note(text);
     }
@@ -59,7 +70,13 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
     if arguments.json {
         print_json(&format!("{}\n", audit_json(&bodies, &options, &found)))?;
     } else {
-        print(&audit_text(&bodies, &options, &found, arguments.limit))?;
+        let mut text = audit_text(&bodies, &options, &found, arguments.limit);
+        if let Some(folder) = &arguments.proofs {
+            let count = found.pairs.iter().flat_map(AuditedPair::proof_files).count();
+            let folder = escape_line(folder.display().to_string());
+            let _ = writeln!(text, "{} in {folder}", count_text(count, "proof", "proofs"));
+        }
+        print(&text)?;
     }
     match found.counts.violations {
         0 => Ok(()),
@@ -68,6 +85,46 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
             Err(Failure::new(Code::Lines, format!("{pairs} nearer than the clearance")))
         }
     }
+}
+
+/// Creates a folder for proofs.
+///
+/// # Errors
+/// It cannot be created, or has files, which would be taken for proofs of this audit.
+fn create_empty_folder(folder: &Path) -> Result<(), Failure> {
+    let failed = |error| Failure::write_error(folder.display(), &error);
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    if std::fs::read_dir(folder).map_err(failed)?.next().is_some() {
+        let place = folder.display();
+        let message = format!("--proofs {place}: the folder is not empty; give a new or empty one");
+        return Err(Failure::new(Code::Usage, message));
+    }
+    Ok(())
+}
+
+/// Writes the proofs of all pairs, and notes pairs without a proof.
+fn write_proofs(
+    bodies: &Bodies,
+    options: &AuditOptions,
+    found: &mut Audit,
+    folder: &Path,
+    watch: Watch,
+) -> Result<(), Failure> {
+    let assembly = bodies.assembly();
+    let write = |name: &str, text: &str| outputs::write_proof(&folder.join(name), text);
+    prove_pairs(assembly, found, options.volume, watch, write)?;
+    let all = found.pairs.iter().flat_map(|pair| pair.proofs.iter().map(move |p| (pair, p)));
+    let mut failed =
+        all.filter_map(|(pair, proof)| Some((pair, proof.claim, proof.file.as_ref().err()?)));
+    for (pair, claim, reason) in failed.by_ref().take(MAX_NOTES) {
+        let [a, b] = pair.parts.map(|part| assembly.parts()[part].name());
+        let what = claim.name().replace('_', " ");
+        note(&format!("{a}, {b}: no proof of the {what}: {reason}"));
+    }
+    if let more @ 1.. = failed.count() {
+        note(&format!("{more} more claims without a proof; --json lists them"));
+    }
+    Ok(())
 }
 
 /// Runs work whose stages are shown by a bar, which is then cleared.
@@ -189,7 +246,12 @@ fn audit_text(
         let [a, b] = pair.parts.map(|part| escape_line(assembly.parts()[part].name()));
         let tolerance = pair.finding.interference().and_then(|found| found.least_tolerance);
         let by = tolerance.map_or_else(String::new, |length| format!(" by {}", length_up(length)));
-        let _ = writeln!(text, "  {a}, {b}{by}: {}", finding_text(assembly, pair));
+        let _ = write!(text, "  {a}, {b}{by}: {}", finding_text(assembly, pair));
+        for part in pair.open_parts() {
+            let name = escape_line(assembly.parts()[part].name());
+            let _ = write!(text, ", {name} has open shells");
+        }
+        text.push('\n');
     }
     if let more @ 1.. = found.counts.violations.saturating_sub(limit) {
         let _ = writeln!(text, "  and {more} more");

@@ -83,17 +83,24 @@ impl Failure {
         self.messages.join("; ")
     }
 
-    /// Prints the messages on standard error. Returns the exit code: success if there are none.
-    pub(crate) fn report(self) -> ExitCode {
-        if self.messages.is_empty() {
-            return ExitCode::SUCCESS;
-        }
+    /// Returns the exit code of a failure with messages.
+    pub(crate) const fn code(&self) -> Code {
+        self.code
+    }
+
+    /// Prints the messages on standard error.
+    pub(crate) fn print_messages(&self) {
         // `eprintln!` would panic if standard error is closed.
         for message in &self.messages {
             let line = format!("error: {}\n", escape_line(message));
             let _ = io::stderr().write_all(line.as_bytes());
         }
-        ExitCode::from(self.code as u8)
+    }
+
+    /// Prints the messages on standard error. Returns the exit code: success if there are none.
+    pub(crate) fn report(self) -> ExitCode {
+        self.print_messages();
+        if self.messages.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(self.code as u8) }
     }
 }
 

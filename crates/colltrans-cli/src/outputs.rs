@@ -8,6 +8,8 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use colltrans_mesh::plain::file_name_part;
+
 use crate::failure::Failure;
 use crate::inputs::Identity;
 
@@ -209,10 +211,8 @@ pub(crate) struct FileNames(std::collections::HashSet<String>);
 impl FileNames {
     /// Returns the file name for a name.
     pub(crate) fn unique_name(&mut self, name: &str) -> String {
-        let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-        let plain: String = name.chars().map(safe).collect();
-        let plain = &plain[..plain.floor_char_boundary(MAX_NAME_BYTES)];
-        let mut chosen = plain.to_owned();
+        let plain = file_name_part(name, MAX_NAME_BYTES);
+        let mut chosen = plain.clone();
         let mut number = 2;
         while !self.0.insert(chosen.to_lowercase()) {
             chosen = format!("{plain}_{number}");

@@ -1,5 +1,8 @@
 //! `colltrans verify`: checks the proofs that `--save-proof` writes.
 
+use std::fmt::Write as _;
+use std::path::Path;
+
 use colltrans::record::FreeRecord;
 use colltrans::{AnyNear, DistanceStatement, ProofFile, Proven, Statement};
 use serde_json::{Map, Value, json};
@@ -8,46 +11,82 @@ use crate::args::VerifyArguments;
 use crate::directions;
 use crate::failure::{Code, Failure, print, print_json};
 use crate::inputs::read_text;
+use crate::terminal::escape_line;
 
-/// Checks a proof, and prints its statement.
+/// Checks proofs, and prints their statements. Files after one that fails are checked, too.
 ///
 /// # Errors
-/// The file cannot be read, or the proof does not hold.
+/// A file cannot be read, or its proof does not hold.
 pub(crate) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
-    let place = arguments.proof.display();
-    let text = read_text(&arguments.proof)?;
-    let proof = ProofFile::from_json(&text)
-        .map_err(|error| Failure::new(Code::Input, format!("{place}: {error}")))?;
-    match proof.check() {
-        Ok(proven) => print_statement(&proof, &proven, arguments.json),
-        Err(error) => {
-            let error = error.to_string();
-            if arguments.json {
-                let answer = json!({ "holds": false, "message": error });
-                print_json(&format!("{answer}\n"))?;
+    let VerifyArguments { proofs, json } = arguments;
+    if let [file] = &proofs[..] {
+        return verify(file, *json, false);
+    }
+    let mut failed = Vec::new();
+    for file in proofs {
+        match verify(file, *json, true) {
+            Err(failure) if failure.code() == Code::Output => return Err(failure),
+            Err(failure) => {
+                failure.print_messages();
+                failed.push(failure.code());
             }
-            Err(Failure::new(Code::Refused, format!("{place}: the proof does not hold: {error}")))
+            Ok(()) => {}
+        }
+    }
+    // A proof that does not hold is more important than a file without one.
+    let code = failed.iter().copied().find(|code| *code == Code::Refused);
+    match code.or(failed.first().copied()) {
+        None => Ok(()),
+        Some(code) => {
+            let (count, of) = (failed.len(), proofs.len());
+            Err(Failure::new(code, format!("{count} of {of} files are not verified")))
         }
     }
 }
 
-/// Prints the statement of a proof that holds, as text or as JSON.
-fn print_statement(proof: &ProofFile, proven: &Proven<'_>, as_json: bool) -> Result<(), Failure> {
+/// Checks a proof, and prints its statement, after the name of the file if it is one of several.
+fn verify(file: &Path, as_json: bool, is_one_of_several: bool) -> Result<(), Failure> {
+    let place = file.display();
+    let text = read_text(file)?;
+    let proof = ProofFile::from_json(&text)
+        .map_err(|error| Failure::new(Code::Input, format!("{place}: {error}")))?;
+    let name = is_one_of_several.then(|| place.to_string());
+    let print_object = |mut answer: Value| {
+        if let Some(name) = &name {
+            answer["file"] = json!(name);
+        }
+        print_json(&format!("{answer}\n"))
+    };
+    let proven = match proof.check() {
+        Ok(proven) => proven,
+        Err(error) => {
+            let error = error.to_string();
+            if as_json {
+                print_object(json!({ "holds": false, "message": error }))?;
+            }
+            let message = format!("{place}: the proof does not hold: {error}");
+            return Err(Failure::new(Code::Refused, message));
+        }
+    };
     let statement = proof.to_string();
-    let free = match proven {
+    let free = match &proven {
         Proven::Directions(free) => Some(FreeRecord::from_directions(free, |_| [None, None])),
         _ => None,
     };
     if as_json {
-        return print_json(&format!(
-            "{}\n",
-            statement_json(proof, proven.time_bounds(), free.as_ref(), &statement)
+        return print_object(statement_json(
+            &proof,
+            proven.time_bounds(),
+            free.as_ref(),
+            &statement,
         ));
     }
-    match &free {
-        Some(free) => print(&format!("holds: {statement}: {}\n", directions::verified_text(free))),
-        None => print(&format!("holds: {statement}\n")),
+    let mut line = name.map_or_else(String::new, |name| format!("{}: ", escape_line(name)));
+    let _ = write!(line, "holds: {statement}");
+    if let Some(free) = &free {
+        let _ = write!(line, ": {}", directions::verified_text(free));
     }
+    print(&format!("{line}\n"))
 }
 
 /// Returns the proven statement with the fields of answers.

@@ -40,6 +40,20 @@ pub fn escape_where(
     Cow::Owned(out)
 }
 
+/// Returns a part of a file name for a name: letters, digits and `-_.` stay, other characters become `_`, and the result
+/// has at most `most` bytes. Different names may have the same result.
+pub fn file_name_part(name: &str, most: usize) -> String {
+    let is_safe = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+    let mut part = String::new();
+    for c in name.chars().map(|c| if is_safe(c) { c } else { '_' }) {
+        if part.len() + c.len_utf8() > most {
+            break;
+        }
+        part.push(c);
+    }
+    part
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -54,6 +68,8 @@ mod tests {
         {
             assert!(is_control(c), "{c:?}");
         }
+        assert_eq!(file_name_part("../größe\0: 3\u{202e}\u{301}", 100), ".._größe___3__");
+        assert_eq!(file_name_part(&"é".repeat(300), 61), "é".repeat(30));
         let seen = "größer ≥ 3 µm – 測試 é\u{301}";
         assert!(matches!(escape_control(seen), Cow::Borrowed(text) if text == seen));
     }

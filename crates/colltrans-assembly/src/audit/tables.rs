@@ -4,9 +4,9 @@
 //! - `colltrans help json` lists the fields, and `docs/answers.schema.json` defines them.
 
 use colltrans::solid::SolidDepth;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
-use super::{Audit, AuditOptions, AuditedPair, Interference};
+use super::{Audit, AuditOptions, AuditedPair, Interference, PairProof};
 use crate::bodies::Bodies;
 use crate::csv::{Cell, Table};
 use crate::part::{Assembly, Part};
@@ -137,6 +137,25 @@ fn pair_json(assembly: &Assembly, pair: &AuditedPair) -> Value {
         object["box"] = json!(bounds);
         object["point"] = json!(found.place.to_array());
     }
+    let open = open_parts(assembly, pair);
+    if !open.is_empty() {
+        object["open"] = json!(open);
+    }
+    if !pair.proofs.is_empty() {
+        let of = |is_proven: bool| {
+            let some = pair.proofs.iter().filter(|proof| proof.file.is_ok() == is_proven);
+            let entry = |proof: &PairProof| {
+                let (Ok(text) | Err(text)) = &proof.file;
+                (proof.claim.name().to_owned(), json!(text))
+            };
+            some.map(entry).collect::<Map<_, _>>()
+        };
+        object["proofs"] = of(true).into();
+        let unproven = of(false);
+        if !unproven.is_empty() {
+            object["unproven"] = unproven.into();
+        }
+    }
     if let Some(found) = pair.finding.nearest() {
         object["points"] = json!(found.points.map(|point| point.to_array()));
     }
@@ -154,12 +173,18 @@ fn inner_part<'a>(assembly: &'a Assembly, pair: &AuditedPair) -> Option<&'a str>
     pair.finding.inner().map(|inner| assembly.parts()[inner].name())
 }
 
+/// Returns the names of the parts of a pair with open shells.
+fn open_parts<'a>(assembly: &'a Assembly, pair: &AuditedPair) -> Vec<&'a str> {
+    assembly.part_names(&pair.open_parts().collect::<Vec<_>>())
+}
+
 /// Returns the pairs of an audit as a table. Cells without a value are empty. `x`, `y`, `z` are the
-/// [place](super::PairFinding::place) of the pair.
+/// [place](super::PairFinding::place) of the pair. `open` is `first`, `second` or `both`, the parts with
+/// open shells, and `proofs` the proof files, separated by spaces.
 pub fn audit_csv(assembly: &Assembly, audit: &Audit) -> String {
     let numbers = QUANTITIES.iter().flat_map(|quantity| quantity.columns);
     let heads = ["first", "second", "finding", "violation"].iter().chain(numbers);
-    let heads: Vec<&str> = heads.chain(&["inner", "role"]).copied().collect();
+    let heads: Vec<&str> = heads.chain(&["inner", "role", "open", "proofs"]).copied().collect();
     let mut table = Table::new(&heads);
     let parts: Vec<&str> = assembly.parts().iter().map(Part::name).collect();
     for pair in &audit.pairs {
@@ -174,6 +199,15 @@ pub fn audit_csv(assembly: &Assembly, audit: &Audit) -> String {
         }
         let texts = [inner_part(assembly, pair), pair_role(assembly, pair)];
         row.extend(texts.map(|text| Cell::Text(text.unwrap_or_default())));
+        row.push(Cell::Text(match pair.has_open_shells {
+            [true, true] => "both",
+            [true, false] => "first",
+            [false, true] => "second",
+            [false, false] => "",
+        }));
+        let files: Vec<&str> = pair.proof_files().collect();
+        let files = files.join(" ");
+        row.push(Cell::Text(&files));
         table.push_row(&row);
     }
     table.into_text()

@@ -161,6 +161,7 @@ fn finding(assembly: &Assembly, k: usize, pair: &AuditedPair, section: Option<&S
             }
             div {
                 dl.facts { @for fact in facts(assembly, pair) { div { dt { (fact.name) } dd { (fact.value) } } } }
+                @for file in pair.proof_files() { p.soft { "Proof: " code { (file) } } }
                 @match section {
                     Some(section) => figure {
                         (picture_markup(section.clone()))
@@ -368,6 +369,11 @@ pub(super) fn facts(assembly: &Assembly, pair: &AuditedPair) -> Vec<Fact> {
     push("tolerance", length_text(pair.tolerance, assembly));
     if let Some(role) = assembly.pair_fit(pair.parts[0], pair.parts[1]).and_then(|fit| fit.role) {
         push("role", role.name().into());
+    }
+    let open: Vec<String> =
+        pair.open_parts().map(|part| shortened(assembly.parts()[part].name(), MAX_NAME)).collect();
+    if !open.is_empty() {
+        push("open shells, without an inside", open.join(", "));
     }
     facts
 }

@@ -1,8 +1,8 @@
 //! Audits: boxes against their closed forms, roles and tolerances, and tables.
 
 use colltrans_assembly::audit::{
-    Audit, AuditOptions, AuditedPair, PairFinding, QUANTITIES, audit, audit_csv, audit_json,
-    examine_pair,
+    Audit, AuditOptions, AuditedPair, PairFinding, ProofClaim, QUANTITIES, audit, audit_csv,
+    audit_json, examine_pair, prove_pairs,
 };
 use colltrans_assembly::roles::{PairFit, Role};
 use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch};
@@ -39,6 +39,45 @@ fn pair_of(
 fn encloses([lower, upper]: [f64; 2], exact: f64, share: f64) -> bool {
     let slack = 1e-12 * exact;
     lower <= exact + slack && exact <= upper + slack && upper - lower <= share * exact + 1e-12
+}
+
+/// Proofs of parts that are unions of overlapping pieces contain the pieces.
+#[test]
+fn parts_of_overlapping_pieces_have_proofs() {
+    let union = [cuboid([0.0; 3], [2.0, 1.0, 1.0]), cuboid([1.0, 0.0, 0.0], [2.0, 1.0, 3.0])];
+    let post = [cuboid([1.5, 0.25, 2.5], [4.0, 0.75, 4.0])];
+    let near = [cuboid([5.0, 0.0, 0.0], [6.0, 1.0, 4.0])];
+    let parts = vec![part("union", &union), part("post", &post), part("near", &near)];
+    let assembly = Assembly::new(parts).unwrap();
+    let mut found = audited(&assembly, 0.0, &within(4.0));
+    let files = std::sync::Mutex::new(Vec::new());
+    let write = |name: &str, text: &str| {
+        files.lock().unwrap().push((name.to_owned(), text.to_owned()));
+        Ok::<(), AssemblyError>(())
+    };
+    let volume = AuditOptions::default().volume;
+    prove_pairs(&assembly, &mut found, volume, Watch::default(), write).unwrap();
+    let mut files = files.into_inner().unwrap();
+    files.sort();
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let listed: Vec<&str> = found.pairs.iter().flat_map(AuditedPair::proof_files).collect();
+    assert_eq!(
+        names,
+        [
+            "001-union--post-common_part.json",
+            "001-union--post-depth.json",
+            "002-post--near-distance.json",
+            "003-union--near-distance.json",
+        ]
+    );
+    assert_eq!(listed.len(), names.len());
+    for (name, text) in &files {
+        let proof = colltrans::ProofFile::from_json(text).unwrap();
+        proof.check().unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(text.matches("vertices").count(), if name.contains("union") { 3 } else { 2 });
+    }
+    let common = found.pairs[0].proofs.iter().find(|of| of.claim == ProofClaim::CommonPart);
+    assert!(common.unwrap().file.is_ok());
 }
 
 /// Returns the box from `low` to `high` with a cavity.

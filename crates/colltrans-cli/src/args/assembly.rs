@@ -105,6 +105,9 @@ pub(crate) struct AuditArguments {
     /// Their time of creation is now, or `SOURCE_DATE_EPOCH` (seconds since 1970).
     #[arg(long, value_name = "OUT.bcf")]
     pub(crate) bcf: Option<PathBuf>,
+    /// Write proofs of all pairs to a new or empty folder, for `colltrans verify`
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) proofs: Option<PathBuf>,
     /// List at most N pairs as text
     #[arg(long, value_name = "N")]
     pub(crate) limit: Option<usize>,

@@ -252,6 +252,7 @@ pub(super) const VERIFY_NOTES: &str = "\
 Examples:
     colltrans clearance bolt.stl plate.stl --direction z --save-proof bolt.json
     colltrans verify bolt.json
+    colltrans verify proofs/*.json
 
 `colltrans help files`: exit codes; `colltrans help json`: fields of the answer.";
 
@@ -566,6 +567,9 @@ With --json one object:
   pairs   [{\"parts\": [a, b], \"finding\", \"violation\", \"clearance\", \"tolerance\", \"role\"}] with
           \"distance\", \"points\" (of touching, apart) or \"depth\", \"translation\", \"volume\", \"box\",
           \"least_tolerance\", \"point\", \"inner\" (of contained). Lengths and volumes are proven [lower, upper]
+          \"open\": the parts with open shells, whose volume and containment are those of closed shells
+          With --proofs also \"proofs\", the file of each claim (\"distance\", \"depth\", \"common_part\"),
+          and \"unproven\", the reason why a claim has no proof
 
 Examples:
   Is anything nearer than 0.5, or interfering? Bolted faces may touch.

@@ -120,8 +120,9 @@ fn json_and_table_have_all_pairs() {
     assert!(lines[0].starts_with("first,second,finding,violation,clearance,distance_lower"));
     assert!(lines[1].starts_with("low,high,interfering,yes,0,,,0.2"), "{table}");
     assert!(lines[3].starts_with("near,on,touching,no,0,0,0,,,"), "{table}");
-    assert!(lines[0].ends_with(",x,y,z,tolerance,other_x,other_y,other_z,inner,role"), "{table}");
-    assert!(lines[2].ends_with(",,,,grain,"), "{table}");
+    let ending = ",x,y,z,tolerance,other_x,other_y,other_z,inner,role,open,proofs";
+    assert!(lines[0].ends_with(ending), "{table}");
+    assert!(lines[2].ends_with(",,,,grain,,,"), "{table}");
     let columns = lines[0].split(',').count();
     assert!(lines.iter().all(|line| line.split(',').count() == columns), "{table}");
     let one = text(folder.path(), &["cubes.toml", "--json", "--threads", "1"], 1);
@@ -303,4 +304,165 @@ fn report_and_bcf_file_have_the_violations_and_a_fixed_date() {
             &["is the same file as the input"],
         );
     }
+}
+
+/// Returns the names of the files of a folder, sorted.
+fn file_names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// Returns the statement of each file of a folder, by `colltrans verify`.
+fn verified(folder: &Path, proofs: &str) -> Vec<Value> {
+    let names = file_names(&folder.join(proofs));
+    let paths: Vec<String> = names.iter().map(|name| format!("{proofs}/{name}")).collect();
+    let mut arguments = vec!["verify", "--json"];
+    arguments.extend(paths.iter().map(String::as_str));
+    let output = support::run(folder, &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let lines: Vec<Value> = stdout(&output).lines().map(json).collect();
+    assert!(lines.iter().zip(&paths).all(|(line, path)| line["file"] == path.as_str()));
+    lines
+}
+
+#[test]
+fn proofs_of_all_pairs_are_verified() {
+    let folder = cubes();
+    let place = folder.path();
+    let arguments =
+        ["cubes.toml", "--within", "0.6", "--proofs", "new/proofs", "--json", "--csv", "pairs.csv"];
+    let report = ["--report", "report.html"];
+    let [found, _] = text(place, &[&arguments[..], &report].concat(), 1);
+    let found: Value = json(&found);
+    let names = file_names(&place.join("new/proofs"));
+    let table = std::fs::read_to_string(place.join("pairs.csv")).unwrap();
+    let page = std::fs::read_to_string(place.join("report.html")).unwrap();
+    let mut listed = Vec::new();
+    for (pair, row) in found["pairs"].as_array().unwrap().iter().zip(table.lines().skip(1)) {
+        let claims: Vec<&str> =
+            pair["proofs"].as_object().unwrap().keys().map(String::as_str).collect();
+        let expected: &[&str] = match pair["finding"].as_str().unwrap() {
+            "apart" => &["distance"],
+            "touching" => &["depth", "distance"],
+            _ => &["common_part", "depth"],
+        };
+        assert_eq!((claims.as_slice(), &pair["unproven"]), (expected, &Value::Null), "{pair}");
+        let proofs = pair["proofs"].as_object().unwrap();
+        for name in proofs.values().map(|name| name.as_str().unwrap()) {
+            assert!(row.contains(name) && page.contains(name), "{name}: {row}");
+            listed.push(name.to_owned());
+        }
+    }
+    listed.sort();
+    assert_eq!(listed, names);
+    assert_eq!(names[0], "001-low--high-common_part.json");
+    let statements = verified(place, "new/proofs");
+    assert_eq!(statements.len(), 11);
+    let of = |name: &str| {
+        let at = names.iter().position(|known| known == name).unwrap_or_else(|| panic!("{name}"));
+        &statements[at]
+    };
+    let bounds =
+        |value: &Value| [value["lower"].as_f64().unwrap(), value["upper"].as_f64().unwrap()];
+    let [lower, upper] = bounds(of("001-low--high-depth.json"));
+    assert!(lower <= 0.25 && 0.25 <= upper && upper - lower < 1e-9, "{lower} {upper}");
+    assert_eq!(of("002-low--grain-common_part.json")["relation"], "fixed_contained");
+    let [lower, upper] = bounds(of("003-near--on-depth.json"));
+    assert!(lower == 0.0 && upper > 0.0 && upper < 1e-9, "{lower} {upper}");
+    assert_eq!(bounds(of("003-near--on-distance.json")), [0.0; 2]);
+    let [lower, upper] = bounds(of("004-high--grain-distance.json"));
+    assert!(lower <= 0.25 && 0.25 <= upper && upper - lower < 1e-9, "{lower} {upper}");
+    // The proofs of an earlier audit would be taken for those of this one.
+    refused(place, &["cubes.toml", "--proofs", "new/proofs"], 2, &["new/proofs", "not empty"]);
+    let one = ["cubes.toml", "--within", "0.6", "--proofs", "one", "--threads", "1"];
+    let [found, _] = text(place, &one, 1);
+    assert!(found.ends_with("11 proofs in one\n"), "{found}");
+    for name in names {
+        let read = |folder: &str| std::fs::read(place.join(folder).join(&name)).unwrap();
+        assert!(read("new/proofs") == read("one"), "{name}");
+    }
+}
+
+#[test]
+fn hostile_names_become_safe_names_of_proofs() {
+    let folder = folder();
+    let place = folder.path();
+    let long = "x".repeat(300);
+    let names = [
+        "../../up",
+        "a/b",
+        "a_b",
+        "a\\b",
+        "CON",
+        "nul.txt",
+        "-rf",
+        "\u{0}",
+        " ",
+        "größe",
+        "測試",
+        &long,
+        ".",
+        "..",
+        "\u{1b}[2J\u{202e}",
+        "a*?\"<>|b:c",
+        "A_B",
+    ];
+    let names: Vec<&str> = names.into_iter().filter(|name| !name.trim().is_empty()).collect();
+    let part = |(k, name): (usize, &&str)| serde_json::json!({"file": "cube.off", "name": name, "translation": [0.75 * k as f64, 0, 0]});
+    let parts: Vec<Value> = names.iter().enumerate().map(part).collect();
+    let manifest = serde_json::json!({ "parts": parts });
+    std::fs::write(place.join("m.json"), manifest.to_string()).unwrap();
+    let before = file_names(place);
+    text(place, &["m.json", "--proofs", "proofs"], 1);
+    let made = file_names(&place.join("proofs"));
+    assert_eq!(made.len(), 2 * (names.len() - 1));
+    for name in &made {
+        let is_safe = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+        assert!(name.chars().all(is_safe) && name.len() <= 150, "{name}");
+        assert!(name.starts_with(|c: char| c.is_ascii_digit()) && name.ends_with(".json"));
+    }
+    assert_eq!(verified(place, "proofs").len(), made.len());
+    let after: Vec<String> =
+        file_names(place).into_iter().filter(|name| name != "proofs").collect();
+    assert_eq!(after, before);
+}
+
+#[test]
+fn parts_with_open_shells_are_named_with_each_pair() {
+    let folder = folder();
+    let place = folder.path();
+    // A sheet that passes through the cube, and a box without a lid beside it.
+    let sheet = "OFF\n4 2 0\n-1 -1 0.5\n2 -1 0.5\n2 2 0.5\n-1 2 0.5\n3 0 1 2\n3 0 2 3\n";
+    std::fs::write(place.join("sheet.off"), sheet).unwrap();
+    let manifest = serde_json::json!({"parts": [
+        {"file": "cube.off", "name": "cube"},
+        {"file": "sheet.off", "name": "wall"},
+        {"file": "cube.off", "name": "far", "translation": [0, 0, 1.5]},
+    ]});
+    std::fs::write(place.join("m.json"), manifest.to_string()).unwrap();
+    let files = ["--csv", "pairs.csv", "--report", "report.html", "--proofs", "proofs"];
+    let arguments = [&["m.json", "--within", "1.5"][..], &files].concat();
+    let [found, _] = text(place, &arguments, 1);
+    assert!(found.contains("cube, wall: interfering, at "), "{found}");
+    assert_eq!(found.matches(", wall has open shells\n").count(), 2, "{found}");
+    let [found, _] = text(place, &["m.json", "--within", "1.5", "--json"], 1);
+    let found: Value = json(&found);
+    for pair in found["pairs"].as_array().unwrap() {
+        let has_wall = pair["parts"].as_array().unwrap().contains(&"wall".into());
+        let expected = if has_wall { serde_json::json!(["wall"]) } else { Value::Null };
+        assert_eq!(pair["open"], expected, "{pair}");
+    }
+    let table = std::fs::read_to_string(place.join("pairs.csv")).unwrap();
+    assert!(
+        table.lines().nth(1).unwrap().ends_with(",second,001-cube--wall-distance.json"),
+        "{table}"
+    );
+    let page = std::fs::read_to_string(place.join("report.html")).unwrap();
+    assert!(page.contains("open shells, without an inside"));
+    // The surfaces have a common point.
+    let statements = verified(place, "proofs");
+    assert_eq!(statements[0]["upper"], 0.0);
 }

@@ -4,15 +4,45 @@
 //! same piece that contains it. If there is none, it is a body of its own. As in [`shells`], containment is decided
 //! exactly by the ray along `z` from a vertex of the cavity, with the tree of boxes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use glam::DVec3;
 
-use super::Solid;
 use super::edges;
 use super::shells::{self, MAX_TRIED_TRIANGLES, lies_on_triangle, ray_crossing};
+use super::{Solid, SolidError};
 
 impl Solid {
+    /// Builds each piece of a union as a solid of its own. A body that is not a union is its only piece.
+    ///
+    /// # Errors
+    /// Returns an error if the facets of a piece are not a surface of their own.
+    pub fn to_pieces(&self) -> Result<Vec<Self>, SolidError> {
+        if self.groups.piece_starts.is_empty() {
+            return Ok(vec![self.clone()]);
+        }
+        let mut pieces: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for t in 0..self.triangles.len() {
+            pieces.entry(self.piece_of(t)).or_default().push(t);
+        }
+        let build = |own: &Vec<usize>| {
+            let (mut vertices, mut numbers) = (Vec::new(), HashMap::new());
+            let mut number = |v: u32| {
+                *numbers.entry(v).or_insert_with(|| {
+                    vertices.push(self.vertices[v as usize]);
+                    vertices.len() as u32 - 1
+                })
+            };
+            let facets: Vec<_> = own.iter().map(|&t| self.triangles[t].map(&mut number)).collect();
+            if own.iter().any(|&t| self.is_open(t)) {
+                Self::from_open_mesh(&vertices, &facets)
+            } else {
+                Self::from_mesh(&vertices, &facets)
+            }
+        };
+        pieces.values().map(build).collect()
+    }
+
     /// Returns the body of each of [`Self::triangles`]: a closed shell with its cavities, or an open shell.
     ///
     /// Bodies are numbered from 0, in the order of their first facets in the input.

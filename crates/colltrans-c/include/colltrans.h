@@ -830,6 +830,19 @@ colltrans_status colltrans_depth_proof(
     const colltrans_pose *fixed_pose,
     const char **json);
 
+/**
+ * Proves how much of the bodies overlaps: bounds of the volume of their common part, its box, and how the bodies lie to
+ * each other. Convex bodies are treated as solids. The bounds differ by at most `accuracy`, a share of the lower one,
+ * unless the search ends before, after a limited amount of work.
+ */
+colltrans_status colltrans_common_part_proof(
+    const colltrans_body *moving,
+    const colltrans_pose *moving_pose,
+    const colltrans_body *fixed,
+    const colltrans_pose *fixed_pose,
+    double accuracy,
+    const char **json);
+
 /** Proves `colltrans_motion_first_contact`. */
 colltrans_status colltrans_motion_proof(
     const colltrans_body *moving,

@@ -853,6 +853,15 @@ inline result<proof> depth_proof(const body &moving, const pose &moving_pose, co
     });
 }
 
+/// Proves how much of the bodies overlaps: bounds of the volume of their common part, its box, and how the bodies lie to
+/// each other. The bounds differ by at most `accuracy`, a share of the lower one, unless the search ends before.
+inline result<proof> common_part_proof(const body &moving, const pose &moving_pose, const body &fixed,
+                                       const pose &fixed_pose, double accuracy = 0.01) {
+    return detail::text([&](auto out) {
+        return colltrans_common_part_proof(moving.get(), &moving_pose, fixed.get(), &fixed_pose, accuracy, out);
+    });
+}
+
 /// Proves `first_contact` along motions.
 inline result<proof> first_contact_proof(const body &moving, const motion &moving_motion, const body &fixed,
                                          const motion &fixed_motion, const cast_options &options = {}) {

@@ -51,10 +51,10 @@ pub use motion::{
 };
 pub use pair::{colltrans_depth, colltrans_distance, colltrans_distance_bounds, colltrans_within};
 pub use proof::{
-    colltrans_check_proof, colltrans_clearance_proof, colltrans_depth_proof,
-    colltrans_distance_proof, colltrans_first_contact_proof, colltrans_motion_proof,
-    colltrans_scene_clearance_proof, colltrans_scene_nearest_proof, colltrans_text_free,
-    colltrans_within_proof,
+    colltrans_check_proof, colltrans_clearance_proof, colltrans_common_part_proof,
+    colltrans_depth_proof, colltrans_distance_proof, colltrans_first_contact_proof,
+    colltrans_motion_proof, colltrans_scene_clearance_proof, colltrans_scene_nearest_proof,
+    colltrans_text_free, colltrans_within_proof,
 };
 pub use scene::{
     Scene, colltrans_scene_clearance, colltrans_scene_free, colltrans_scene_insert,

@@ -3,7 +3,8 @@
 use std::ffi::{CString, c_char};
 
 use colltrans::record::PairQuestion;
-use colltrans::{ByKind, ProofFile, Solid};
+use colltrans::solid::VolumeOptions;
+use colltrans::{ByKind, Pair, ProofFile, Solid};
 
 use crate::body::{Body, Pose, bodies, placed};
 use crate::cast::{AnyCast, CastOptions, reject};
@@ -173,6 +174,32 @@ pub unsafe extern "C" fn colltrans_depth_proof(
 ) -> Status {
     let (bodies, poses) = ([moving, fixed], [moving_pose, fixed_pose]);
     unsafe { prove_pair(PairQuestion::Depth, bodies, poses, json) }
+}
+
+/// Proves how much of the bodies overlaps: bounds of the volume of their common part, its box, and how the bodies lie to
+/// each other. Convex bodies are treated as solids. The bounds differ by at most `accuracy`, a share of the lower one,
+/// unless the search ends before, after a limited amount of work.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn colltrans_common_part_proof(
+    moving: *const Body,
+    moving_pose: *const Pose,
+    fixed: *const Body,
+    fixed_pose: *const Pose,
+    accuracy: f64,
+    json: *mut *const c_char,
+) -> Status {
+    unsafe {
+        prove(json, || {
+            if accuracy.is_nan() || accuracy < 0.0 {
+                return Err(Failure::invalid("accuracy", "it must be 0 or a positive share"));
+            }
+            let [p, q] = placed(moving, moving_pose, fixed, fixed_pose)?.solids()?;
+            let [moving, fixed] = pieces(bodies(moving, fixed)?)?;
+            let options = VolumeOptions::default().with_accuracy(accuracy);
+            let pair = Pair::new(p, q)?;
+            Ok(ProofFile::of_solid_common_part(&pair, [&moving, &fixed], options)?)
+        })
+    }
 }
 
 /// Proves `colltrans_motion_first_contact`.

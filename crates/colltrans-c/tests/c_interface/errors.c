@@ -367,6 +367,10 @@ int main(void) {
     OK(colltrans_depth_proof(solid, NULL, cube, NULL, &text));
     OK(colltrans_check_proof(text, strlen(text), NULL));
     colltrans_text_free(text);
+    OK(colltrans_common_part_proof(cube, NULL, cube, NULL, 0.01, &text));
+    OK(colltrans_check_proof(text, strlen(text), NULL));
+    colltrans_text_free(text);
+    EXPECT(colltrans_common_part_proof(cube, NULL, cube, NULL, -1.0, &text), COLLTRANS_INVALID_ARGUMENT, "accuracy");
 
     colltrans_scene_free(scene);
     colltrans_motion_free(rest);

@@ -258,6 +258,8 @@ static void proofs() {
         ct::within_proof(solid, above, cube, {}, 1.0),
         ct::depth_proof(cube, {}, cube, {}),
         ct::depth_proof(solid, {}, cube, {}),
+        ct::common_part_proof(cube, {}, cube, {}),
+        ct::common_part_proof(solid, {}, cube, {}),
         ct::first_contact_proof(cube, way, cube, rest),
         ct::first_contact_proof(solid, way, cube, rest),
         scene.nearest_proof(cube, above),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from test_assemblies import GEARBOX, cuboid
 
-from colltrans import Assembly, InputError
+from colltrans import Assembly, InputError, check
 from colltrans.assembly import audit
 from colltrans.errors import AssemblyError
 
@@ -66,6 +66,51 @@ def test_boxes_interfere_touch_or_are_near() -> None:
     pressed = Assembly(parts).with_pair("a", "over", role="press", tolerance=0.3).audit()
     at = list(zip(pressed.first.tolist(), pressed.second.tolist(), strict=True)).index((0, 1))
     assert (pressed.role[at], pressed.tolerance[at]) == ("press", 0.3)
+
+
+def test_proofs_of_all_pairs_are_checked(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    names = ["../up", "a/b", "a_b", "\0", "größe", "CON", "x" * 300]
+    boxes = [
+        cuboid([0, 0, 0], [1, 1, 1]),
+        cuboid([0.75, 0, 0], [2, 1, 1]),
+        cuboid([0, 0, 1], [1, 1, 2]),
+        cuboid([-1.5, 0, 0], [-0.5, 1, 1]),
+        cuboid([0.25, 0.25, 0.25], [0.5, 0.5, 0.5]),
+        cuboid([3, 0, 0], [4, 1, 1]),
+        cuboid([3, 0, 0.5], [4, 1, 2]),
+    ]
+    folder = tmp_path / "proofs"
+    found = audit(dict(zip(names, boxes, strict=True)), 0.75, proofs=folder)
+    files = [folder / name for of in found.proofs for name in of.values()]
+    assert sorted(files) == sorted(folder.iterdir())
+    assert [path.name[0] for path in tmp_path.iterdir()] == ["p"]
+    kinds = {
+        "apart": {"distance"},
+        "touching": {"distance", "depth"},
+        "contained": {"depth", "common_part"},
+        "interfering": {"depth", "common_part"},
+    }
+    for kind, of in zip(found.finding, found.proofs, strict=True):
+        assert set(of) == kinds[kind]
+    assert set(found.finding) == set(kinds)
+    assert not any(found.unproven) and not found.open_shells.any()
+    for path in files:
+        report = check.check(path.read_text(encoding="utf-8"))
+        assert report.holds
+    assert check.main([str(path) for path in files]) in (0, 7)
+    assert capfd.readouterr().out.count(": holds: ") >= len(files)
+    (folder / "bad.json").write_text("{}")
+    assert check.main([str(path) for path in sorted(folder.iterdir())]) == 3
+    with pytest.raises(InputError, match="not empty"):
+        audit(dict(zip(names, boxes, strict=True)), proofs=folder)
+    assert audit(dict(zip(names, boxes, strict=True))).proofs == ({},) * 4
+
+
+def test_pairs_have_the_open_shells_of_their_parts() -> None:
+    sheet = ([[-1, -1, 0.5], [2, -1, 0.5], [2, 2, 0.5], [-1, 2, 0.5]], [[0, 1, 2], [0, 2, 3]])
+    found = audit({"cube": cuboid([0, 0, 0], [1, 1, 1]), "wall": sheet})
+    assert found.finding.tolist() == ["interfering"]
+    assert found.open_shells.tolist() == [[False, True]]
 
 
 def test_invalid_arguments_are_refused() -> None:

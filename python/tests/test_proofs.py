@@ -1,5 +1,6 @@
 """Tests that saved proofs equal those of the command line and that both checkers accept them."""
 
+import pickle
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +11,17 @@ import pytest
 from conftest import ROOT
 
 import colltrans
-from colltrans import Cast, ConvexPolyhedron, Grazing, Slides, Solid, SolidCast, check
+from colltrans import (
+    Cast,
+    ConvexPolyhedron,
+    Grazing,
+    InputError,
+    Pair,
+    Slides,
+    Solid,
+    SolidCast,
+    check,
+)
 
 DATA = ROOT / "data"
 Verify: TypeAlias = Callable[[Path], str]
@@ -126,3 +137,25 @@ def test_an_unwritable_file_raises_an_error(tmp_path: Path) -> None:
     cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     with pytest.raises(OSError):
         colltrans.clearance(cube, cube, [1, 0, 0]).save_proof(tmp_path / "none" / "proof.json")
+
+
+def test_common_parts_have_proofs(tmp_path: Path) -> None:
+    cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    grain = ConvexPolyhedron.cuboid([0.25, 0.25, 0.25], [0.5, 0.5, 0.5])
+    for moving, shift, volume, relation in [
+        (cube, 0.75, 0.25, "crossing"),
+        (grain, 0.0, 1 / 64, "moving_contained"),
+        (cube, 2.0, 0.0, "disjoint"),
+    ]:
+        common = Pair(moving, cube, moving_pose=[shift, 0, 0]).common_part()
+        lower, upper = common.volume
+        assert lower <= volume <= upper <= volume + 1e-9
+        assert (common.relation, common.point is None) == (relation, volume == 0)
+        common.verify()
+        common.save_proof(tmp_path / "proof.json")
+        text = (tmp_path / "proof.json").read_text(encoding="utf-8")
+        assert check.check(text).holds
+        again = pickle.loads(pickle.dumps(common))
+        assert again.volume == common.volume and again.proof_json() == common.proof_json()
+    with pytest.raises(InputError, match="accuracy"):
+        Pair(cube, cube).common_part(accuracy=-1)

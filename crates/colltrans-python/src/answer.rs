@@ -4,8 +4,8 @@
 //! the first contact of the reversed query, as in the library. The contact of a `Behind` holds the reversed query.
 //! A `LastContact` holds both queries.
 
-use std::fs;
 use std::path::Path;
+use std::{fs, io};
 
 use colltrans::record::{Dents, Record};
 use pyo3::PyClass;
@@ -48,13 +48,16 @@ where
 
 /// Writes a text and a newline to a file.
 pub(crate) fn save(path: &Path, text: String) -> PyResult<()> {
-    fs::write(path, text + "\n").map_err(|error| {
-        let words = error.to_string();
-        let words = words.split(" (os error").next().unwrap_or_default().to_owned();
-        // With these arguments Python creates the subclass, such as FileNotFoundError, and adds the file name
-        // to the message.
-        PyOSError::new_err((error.raw_os_error(), words, path.to_owned()))
-    })
+    fs::write(path, text + "\n").map_err(|error| write_error(path, &error))
+}
+
+/// Converts the error of writing a file.
+pub(crate) fn write_error(path: &Path, error: &io::Error) -> PyErr {
+    let words = error.to_string();
+    let words = words.split(" (os error").next().unwrap_or_default().to_owned();
+    // With these arguments Python creates the subclass, such as FileNotFoundError, and adds the file name to the
+    // message.
+    PyOSError::new_err((error.raw_os_error(), words, path.to_owned()))
 }
 
 /// Defines the members that all answer classes share. `$again` rebuilds the library's answer from an object.

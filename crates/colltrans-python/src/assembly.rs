@@ -14,7 +14,9 @@ use std::time::Duration;
 
 use colltrans::glam::{DAffine3, DVec3};
 use colltrans::solid::StartOverlap;
-use colltrans_assembly::audit::{AuditOptions, AuditedPair, QUANTITIES, Quantity, audit};
+use colltrans_assembly::audit::{
+    AuditOptions, AuditedPair, PairProof, QUANTITIES, Quantity, audit, prove_pairs,
+};
 use colltrans_assembly::blocking::BlockingGraph;
 use colltrans_assembly::candidates::{CandidateOptions, find_candidates};
 use colltrans_assembly::liaisons::find_liaisons;
@@ -37,6 +39,7 @@ use colltrans_mesh::Mesh;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
+use crate::answer::write_error;
 use crate::arrays::{faces, points, table};
 use crate::errors::{OrRaise, error};
 use crate::frozen::getters;
@@ -92,15 +95,30 @@ type WantedRow = (Vec<usize>, Vec<usize>, bool, bool);
 type StuckRow = (Vec<usize>, usize, Option<usize>, String, Vec<(usize, Vec<Vec<usize>>)>);
 
 /// Indices of the first and the second part and of the inner one (or -1), names of the findings and of the
-/// roles, whether they are violations, a table for each of [`QUANTITIES`] by name, and the numbers of examined and of
-/// ignored pairs.
+/// roles, whether they are violations, whether both parts have open shells, a table for each of [`QUANTITIES`] by name,
+/// the numbers of examined and of ignored pairs, the proof file of each claim, and the reasons of claims without a proof.
 type AuditColumns<'py> = (
     [Vec<i64>; 3],
     [Vec<&'static str>; 2],
     Vec<bool>,
+    Vec<[bool; 2]>,
     BTreeMap<&'static str, Bound<'py, PyArray2<f64>>>,
     [usize; 2],
+    [Vec<BTreeMap<&'static str, String>>; 2],
 );
+/// Reason why the proofs of an audit are not complete.
+enum ProofFailure {
+    Audit(AssemblyError),
+    /// A file is not written.
+    Write(PathBuf, std::io::Error),
+}
+
+impl From<AssemblyError> for ProofFailure {
+    fn from(error: AssemblyError) -> Self {
+        Self::Audit(error)
+    }
+}
+
 /// Clearance between two groups of parts.
 type LevelRow = (Vec<String>, Vec<String>, f64);
 
@@ -440,6 +458,7 @@ impl Assembly {
         levels: Vec<LevelRow>,
         tolerance: Option<f64>,
         allow_contact: bool,
+        proofs: Option<PathBuf>,
     ) -> PyResult<AuditColumns<'py>> {
         let options = AuditOptions::default().with_allow_contact(allow_contact);
         let mut options = options.with_within(within).or_raise()?;
@@ -447,7 +466,21 @@ impl Assembly {
             options = options.with_level(&self.0, [first, second], *length).or_raise()?;
         }
         let choices = Choices::new(tolerance, false);
-        let found = self.ask(py, choices, |bodies, watch| audit(bodies, &options, watch))?;
+        let found = self.ask(py, choices, |bodies, watch| {
+            let mut found = audit(bodies, &options, watch)?;
+            let Some(folder) = proofs else { return Ok(Ok(found)) };
+            let write = |name: &str, text: &str| {
+                let path = folder.join(name);
+                let written = std::fs::write(&path, format!("{text}\n"));
+                written.map_err(|error| ProofFailure::Write(path, error))
+            };
+            match prove_pairs(&self.0, &mut found, options.volume, watch, write) {
+                Ok(()) => Ok(Ok(found)),
+                Err(ProofFailure::Audit(error)) => Err(error),
+                Err(ProofFailure::Write(path, error)) => Ok(Err((path, error))),
+            }
+        })?;
+        let found = found.map_err(|(path, error)| write_error(&path, &error))?;
         let tables = QUANTITIES
             .iter()
             .map(|quantity| Ok((quantity.name, quantity_table(py, quantity, &found.pairs)?)));
@@ -458,6 +491,17 @@ impl Assembly {
         };
         let role = |[a, b]: [usize; 2]| self.0.pair_fit(a, b).and_then(|fit| fit.role);
         let pairs = found.pairs.iter();
+        let files = |is_proven: bool| {
+            let of_pair = |pair: &AuditedPair| {
+                let some = pair.proofs.iter().filter(|proof| proof.file.is_ok() == is_proven);
+                let entry = |proof: &PairProof| {
+                    let (Ok(text) | Err(text)) = &proof.file;
+                    (proof.claim.name(), text.clone())
+                };
+                some.map(entry).collect()
+            };
+            found.pairs.iter().map(of_pair).collect()
+        };
         Ok((
             [
                 column(|pair| Some(pair.parts[0])),
@@ -468,9 +512,11 @@ impl Assembly {
                 pairs.clone().map(|pair| pair.finding.name()).collect(),
                 pairs.clone().map(|pair| role(pair.parts).map_or("", Role::name)).collect(),
             ],
-            pairs.map(|pair| pair.is_violation).collect(),
+            pairs.clone().map(|pair| pair.is_violation).collect(),
+            pairs.map(|pair| pair.has_open_shells).collect(),
             tables,
             [found.counts.examined, found.counts.ignored],
+            [files(true), files(false)],
         ))
     }
 

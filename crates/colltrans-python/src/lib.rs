@@ -24,6 +24,7 @@ mod bulk;
 mod certificate;
 mod clearance;
 mod columns;
+mod common_part;
 mod directions;
 mod distance;
 mod errors;
@@ -64,6 +65,8 @@ mod _colltrans {
     use crate::certificate::{Certificate, Separation, SolidCertificate};
     #[pymodule_export]
     use crate::clearance::{Behind, Blocked, DirectionalDepth, Intersection, Overlapping, Slides};
+    #[pymodule_export]
+    use crate::common_part::CommonPart;
     #[pymodule_export]
     use crate::directions::{FreeDirections, free_directions};
     #[pymodule_export]

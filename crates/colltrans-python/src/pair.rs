@@ -1,6 +1,7 @@
 //! Queries of two bodies at fixed poses, as values.
 
 use colltrans::record::{Dents, PairQuestion};
+use colltrans::solid::VolumeOptions;
 use colltrans::{ConvexPolyhedron, ProofFile, QueryError, Solid};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -107,6 +108,15 @@ impl Pair {
         };
         let pieces = [self.bodies[0].pieces().or_raise()?, self.bodies[1].pieces().or_raise()?];
         Ok(question.prove_solids(&pair, [&pieces[0], &pieces[1]]).or_raise()?.1)
+    }
+
+    /// Builds the proof of the common part. Convex bodies are treated as solids.
+    pub(crate) fn common_part_proof(&self, options: VolumeOptions) -> PyResult<ProofFile> {
+        let ([p, q], [at, to]) = (&self.bodies, self.poses);
+        let [moving, fixed] = [p.solid_with_area().or_raise()?, q.solid_with_area().or_raise()?];
+        let pair = colltrans::Pair::new(moving.at(at), fixed.at(to)).or_raise()?;
+        let pieces = [p.pieces().or_raise()?, q.pieces().or_raise()?];
+        ProofFile::of_solid_common_part(&pair, [&pieces[0], &pieces[1]], options).or_raise()
     }
 }
 

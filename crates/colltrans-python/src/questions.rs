@@ -9,6 +9,7 @@ use pyo3::types::PyBool;
 use crate::answer::Answer;
 use crate::body::ConvexPolyhedron;
 use crate::certificate::{Certificate, Separation, SolidCertificate};
+use crate::common_part::CommonPart;
 use crate::distance::{depth_of, distance_of, within_of};
 use crate::errors::{OrRaise, error};
 use crate::pair::Pair;
@@ -88,6 +89,36 @@ impl Pair {
     /// Computes the depth of the overlap; see :func:`depth`.
     fn depth<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         depth_of(slf)
+    }
+
+    /// Computes how much of the bodies overlaps, and proves it. Convex bodies are treated as solids.
+    ///
+    /// Parameters
+    /// ----------
+    /// accuracy : float
+    ///     Difference of the bounds of the volume at which the search ends, as a share of the lower one. It also ends
+    ///     after a limited amount of work.
+    ///
+    /// Returns
+    /// -------
+    /// CommonPart
+    ///
+    /// Raises
+    /// ------
+    /// CaseError
+    ///     There is no proof, for example because a body is rounded.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron, Pair
+    /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    /// >>> common = Pair(cube, cube, moving_pose=[0.5, 0, 0]).common_part()
+    /// >>> common.relation, common.volume[0] <= 0.5 <= common.volume[1]
+    /// ('crossing', True)
+    /// >>> common.verify()
+    #[pyo3(signature = (*, accuracy=0.01))]
+    fn common_part(slf: &Bound<'_, Self>, accuracy: f64) -> PyResult<CommonPart> {
+        CommonPart::of_pair(slf, accuracy)
     }
 
     /// Checks whether the bodies meet; see :func:`intersects`.

@@ -103,8 +103,14 @@ class Audit:
         The nearest point of the second part, of parts that touch or are apart.
     least_tolerance : ndarray of shape (N,)
         The tolerance with which parts that interfere would touch; NaN if there is none.
+    open_shells : ndarray of bool, shape (N, 2)
+        Whether each part has open shells. These have no inside, so that containment, depth and
+        volume are those of closed shells alone.
     examined, ignored : int
         Number of pairs whose boxes are near enough, and of those that are ignored or glued.
+    proofs, unproven : tuple of dict
+        With ``proofs=``: for each pair the name of the file of each claim (``"distance"``,
+        ``"depth"``, ``"common_part"``), and the reason why a claim has no proof.
     """
 
     parts: tuple[str, ...]
@@ -123,8 +129,11 @@ class Audit:
     point: Floats
     other_point: Floats
     least_tolerance: Floats
+    open_shells: NDArray[np.bool_]
     examined: int
     ignored: int
+    proofs: tuple[dict[str, str], ...] = ()
+    unproven: tuple[dict[str, str], ...] = ()
 
     def __len__(self) -> int:
         return len(self.first)
@@ -806,6 +815,7 @@ class Assembly:
         levels: Mapping[tuple[str, str], float] | None = None,
         tolerance: float | None = None,
         allow_contact: bool = False,
+        proofs: str | PathLike[str] | None = None,
     ) -> Audit:
         """Finds all pairs of parts that interfere, touch, or are nearer than a clearance.
 
@@ -824,6 +834,9 @@ class Assembly:
             errors of the parts and the precision of their files.
         allow_contact : bool
             Whether parts that touch satisfy every clearance.
+        proofs : str or os.PathLike, optional
+            A new or empty folder for proof files of all pairs, which ``colltrans verify`` and
+            ``python -m colltrans.check`` check.
 
         Returns
         -------
@@ -836,9 +849,13 @@ class Assembly:
         >>> bool((found.distance[found.finding == "apart", 1] < 0.5).all())
         True
         """
+        if proofs is not None:
+            Path(proofs).mkdir(parents=True, exist_ok=True)
+            if any(Path(proofs).iterdir()):
+                raise InputError(f"proofs: the folder {proofs} is not empty; name a new one")
         asked = [([a], [b], float(length)) for (a, b), length in (levels or {}).items()]
-        parts, words, violation, tables, counts = self._assembly.audit(
-            float(within), asked, tolerance, allow_contact
+        parts, words, violation, open_shells, tables, counts, files = self._assembly.audit(
+            float(within), asked, tolerance, allow_contact, proofs
         )
         first, second, inner = (np.array(part, dtype=np.int64) for part in parts)
         finding, role = (np.array(word, dtype=np.str_) for word in words)
@@ -855,8 +872,11 @@ class Assembly:
             inner,
             role,
             **columns,
+            open_shells=np.array(open_shells, dtype=np.bool_).reshape(-1, 2),
             examined=counts[0],
             ignored=counts[1],
+            proofs=tuple(files[0]),
+            unproven=tuple(files[1]),
         )
 
     def blocking(
@@ -1108,6 +1128,7 @@ def audit(
     levels: Mapping[tuple[str, str], float] | None = None,
     tolerance: float | None = None,
     allow_contact: bool = False,
+    proofs: str | PathLike[str] | None = None,
 ) -> Audit:
     """Finds all pairs of parts that interfere, touch, or are nearer than a clearance.
 
@@ -1115,7 +1136,7 @@ def audit(
     ----------
     parts : Assembly, mapping of str to (vertices, faces), or path
         The parts, or a file or folder for :meth:`Assembly.read`.
-    within, levels, tolerance, allow_contact
+    within, levels, tolerance, allow_contact, proofs
         See :meth:`Assembly.audit`.
 
     Returns
@@ -1141,4 +1162,6 @@ def audit(
         assembly = Assembly.read(parts)
     else:
         assembly = Assembly(parts)
-    return assembly.audit(within, levels=levels, tolerance=tolerance, allow_contact=allow_contact)
+    return assembly.audit(
+        within, levels=levels, tolerance=tolerance, allow_contact=allow_contact, proofs=proofs
+    )

@@ -6,8 +6,9 @@
 //! 2. Test the bodies at that tolerance. It is the result if the plane that separates the facets separates the
 //!    bodies, or if they do not overlap elsewhere. Otherwise repeat step 1 for the next place.
 //! 3. At large tolerances facets may begin to overlap again, so one place is not enough. Then the tolerance is
-//!    doubled and bisected, and each step tests the bodies: first the last place, then a plane between convex
-//!    bodies, then all facets.
+//!    doubled until the bodies do not overlap. The tolerance at which the last place disappears and the middle of the
+//!    bracket narrow it in turns. Each step tests the bodies: first the last place, then a plane between convex bodies,
+//!    then all facets.
 
 use super::{SolidScene, check_thickness};
 use crate::body::Solid;
@@ -73,26 +74,63 @@ pub(crate) fn least_tolerance_from(
     }
     let convex = !nominal.has_min_gap() && HullPair::of_convex(&cast.setting.bodies).is_some();
     let mut between = None;
-    let mut is_free = |tolerance| {
+    let mut overlap_at = |tolerance, last: Overlap, steps: &mut SolidSteps| {
         if vanishes(tolerance) {
-            return true;
+            return None;
         }
         let smaller = shrunk(tolerance);
         steps.leaves += 1;
-        if overlap::is_overlap(&smaller, place) {
-            return false;
+        if overlap::is_overlap(&smaller, last) {
+            return Some(last);
         }
         if convex && let Some(normal) = parted::separating_normal(&smaller, between) {
             between = Some(normal);
-            return true;
+            return None;
         }
-        let found = overlap::find_overlap(&smaller, steps);
+        overlap::find_overlap(&smaller, steps)
+    };
+    let mut is_free = |tolerance| {
+        let found = overlap_at(tolerance, place, steps);
         place = found.unwrap_or(place);
         found.is_none()
     };
     let ends = bracket_by_doubling([overlapping, nominal.size()], nominal.noise, &mut is_free)?;
-    let least = bisect(ends, nominal.noise, is_free);
+    let least = narrow(&nominal, (place, !convex), ends, steps, overlap_at);
     (!vanishes(least)).then_some(least)
+}
+
+/// Narrows a bracket of [`bracket_by_doubling`] to the accuracy and returns its upper end. `place` shows an overlap at its
+/// lower end, and `overlap_at` returns a place that does at another tolerance.
+///
+/// A test that finds no overlap is the most expensive one, because it visits all facets that are near each other. It is
+/// the last one at the tolerance at which the deepest place disappears. Without `by_places` the search only bisects: it is
+/// faster for convex bodies, which a plane separates.
+fn narrow(
+    nominal: &PairFrame,
+    (mut place, by_places): (Overlap, bool),
+    [mut low, mut high]: [f64; 2],
+    steps: &mut SolidSteps,
+    mut overlap_at: impl FnMut(f64, Overlap, &mut SolidSteps) -> Option<Overlap>,
+) -> f64 {
+    for _ in 0..MAX_BISECTIONS {
+        let gone = by_places
+            .then(|| place_tolerance(nominal, place, [low, high], &mut steps.leaves))
+            .flatten();
+        if let Some(gone) = gone.filter(|gone| low < *gone && *gone < high) {
+            let Some(found) = overlap_at(gone, place, steps) else { return gone };
+            (place, low) = (found, gone);
+        }
+        let middle = low + 0.5 * (high - low);
+        let is_close = high - low <= tolerance_accuracy(high, nominal.noise);
+        if is_close || middle <= low || middle >= high {
+            break;
+        }
+        match overlap_at(middle, place, steps) {
+            Some(found) => (place, low) = (found, middle),
+            None => high = middle,
+        }
+    }
+    high
 }
 
 /// Checks whether the plane with the widest gap between the two facets of a place separates the bodies. Returns

@@ -13,10 +13,10 @@ const SETTINGS: u64 = 60;
 
 /// Families of solids.
 const SOLIDS: &[(&str, u64)] = &[
-    ("grid", 0x7f4d_12c6_7c07_0c04),
-    ("sheared", 0x770c_8211_b115_3581),
+    ("grid", 0x41f0_7c39_a053_e170),
+    ("sheared", 0x7b3c_f442_a04e_a914),
     ("quarter", 0xe22c_07c1_5311_8aba),
-    ("halves", 0x956b_efe9_e35f_8274),
+    ("halves", 0x9f03_04d5_bfd8_38a5),
     ("mould", 0x82bc_b2a1_ee94_1a82),
     ("rotated", 0x689e_be44_e5e8_7340),
 ];

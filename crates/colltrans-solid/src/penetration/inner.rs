@@ -4,7 +4,8 @@
 //!   their depth is at least that of `C` and `D`.
 //! - Balls around one point: the depth is the sum of their radii. The sum of the depths of a point below both surfaces
 //!   has the Lipschitz constant 2, so a cube of half diagonal `d` contains no point with a sum larger than that of its
-//!   centre plus `2 d`. The search divides cubes, best first.
+//!   centre plus `2 d`. The search divides cubes, best first. Cubes that are outside one body, or that cannot contain
+//!   deeper balls than those known, are dropped.
 //! - Boxes parallel to the axes of the world: the depth is the smallest overlap along an axis, in either direction. The
 //!   boxes grow from cubes in these balls. The side that limits the depth moves to the next facet.
 //! - The grown box, less [`MARGIN`] noises, meets no facet, and contains the centre of the balls, which is inside.
@@ -92,10 +93,13 @@ impl Balls {
     }
 }
 
-/// A cube, by its centre and half a side, with an upper bound of the sum of the depths of its points below both surfaces.
+/// A cube, by its centre and half a side.
 struct Cube {
     center: DVec3,
     half: f64,
+    /// Upper bounds of the depths of its points below the surfaces of the moving and of the fixed body.
+    depths: [f64; 2],
+    /// The sum of both depths.
     bound: f64,
 }
 
@@ -171,12 +175,10 @@ fn find_balls(
 ) -> Vec<Balls> {
     let origin = pair.bodies.translations[0];
     let solids = placed_solids(pair);
-    // Returns lower and upper bounds of the depth of a point below each surface.
-    let depths_at = |center: DVec3| {
-        solids.map(|solid| match core_distances(solid, &[center]).as_deref() {
-            Ok([found]) => [-found.upper, -found.lower],
-            _ => [f64::NEG_INFINITY; 2],
-        })
+    // Returns a lower and an upper bound of the depth of a point below the surface of a body.
+    let depth_at = |body: usize, center| match core_distances(solids[body], &[center]).as_deref() {
+        Ok([found]) => [-found.upper, -found.lower],
+        _ => [f64::NEG_INFINITY; 2],
     };
     let room = common_box(scene);
     let sides = room.side_lengths();
@@ -187,15 +189,21 @@ fn find_balls(
     }
     let (mut best, mut centers) = (0.0_f64, 0);
     let mut open = BinaryHeap::new();
-    let mut add = |center: DVec3, half: f64, best: &mut f64| {
-        let depths = depths_at(center);
-        let radii = depths.map(|[lower, _]| lower);
+    // Bounds the depths in a cube, whose points are at most `depths` deep. `None` if no deeper balls are in it.
+    let mut add = |center: DVec3, half: f64, mut depths: [f64; 2], best: &mut f64| {
+        let (diagonal, mut radii) = (half * 3.0_f64.sqrt(), [0.0; 2]);
+        for body in 0..2 {
+            let [lower, upper] = depth_at(body, center);
+            (radii[body], depths[body]) = (lower, depths[body].min(upper + diagonal));
+            if depths[body] <= 0.0 || depths[0] + depths[1] <= *best {
+                return None;
+            }
+        }
         if radii[0] > 0.0 && radii[1] > 0.0 {
             found.push(Balls { center, radii });
             *best = best.max(radii[0] + radii[1]);
         }
-        let bound = depths[0][1] + depths[1][1] + 2.0 * half * 3.0_f64.sqrt();
-        Cube { center, half, bound }
+        Some(Cube { center, half, depths, bound: depths[0] + depths[1] })
     };
     let counts = (sides / (2.0 * half)).ceil().min(DVec3::splat(8.0));
     let halves = sides / counts * 0.5;
@@ -203,7 +211,8 @@ fn find_balls(
     for k in 0..counts.element_product() as u32 {
         let (x, y) = (k % counts.x as u32, k / counts.x as u32);
         let at = DVec3::new(x.into(), (y % counts.y as u32).into(), (y / counts.y as u32).into());
-        open.push(add(origin + room.low + (2.0 * at + 1.0) * halves, largest, &mut best));
+        let center = origin + room.low + (2.0 * at + 1.0) * halves;
+        open.extend(add(center, largest, [f64::INFINITY; 2], &mut best));
         centers += 1;
     }
     while let Some(cube) = open.pop() {
@@ -215,7 +224,7 @@ fn find_balls(
         for k in 0..8 {
             let side =
                 DVec3::from_array([0, 1, 2].map(|a| if k >> a & 1 == 1 { half } else { -half }));
-            open.push(add(cube.center + side, half, &mut best));
+            open.extend(add(cube.center + side, half, cube.depths, &mut best));
             centers += 1;
         }
     }

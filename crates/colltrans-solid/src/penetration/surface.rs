@@ -7,6 +7,8 @@
 //! - A point is a solid with one facet without area, in a pose that translates it from the origin. Therefore its
 //!   position is exact, and both tests apply to it. It is inside if its one shell is.
 
+use std::sync::LazyLock;
+
 use glam::DVec3;
 use thiserror::Error;
 
@@ -124,14 +126,19 @@ impl Solid {
     }
 }
 
+/// The origin as a body of one facet without area.
+static ORIGIN: LazyLock<Result<Solid, SignedDistanceError>> = LazyLock::new(|| {
+    let origin = ConvexPolyhedron::from_points(&[DVec3::ZERO])
+        .map_err(|error| QueryError::NotASolid { reason: error.to_string() })?;
+    Ok(origin.as_surface()?.clone())
+});
+
 /// Computes the signed distances of points from the surface of a solid without its radius.
 pub(super) fn core_distances(
     solid: Placed<'_, Solid>,
     points: &[DVec3],
 ) -> Result<Vec<SignedDistance>, SignedDistanceError> {
-    let origin = ConvexPolyhedron::from_points(&[DVec3::ZERO])
-        .map_err(|error| QueryError::NotASolid { reason: error.to_string() })?;
-    let origin = origin.as_surface()?;
+    let origin = ORIGIN.as_ref().map_err(Clone::clone)?;
     let distance = |(index, at): (usize, &DVec3)| {
         let place = Pose::from_translation(*at)
             .map_err(|reason| SignedDistanceError::Point { index, reason })?;

@@ -68,7 +68,8 @@ fn audit_in_pool(arguments: &AuditArguments) -> Result<(), Failure> {
         note(&format!("{} has the {MAX_TOPICS} worst violations", path.display()));
     }
     if arguments.json {
-        print_json(&format!("{}\n", audit_json(&bodies, &options, &found)))?;
+        let text = serde_json::to_string(&audit_json(&bodies, &options, &found));
+        print_json(&(text.expect("an audit becomes JSON") + "\n"))?;
     } else {
         let mut text = audit_text(&bodies, &options, &found, arguments.limit);
         if let Some(folder) = &arguments.proofs {

@@ -120,7 +120,7 @@ fn audit_equals_library_audit_and_has_a_report() {
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     let options = AuditOptions::default().with_within(0.5).unwrap();
     let found = audit(&bodies, &options, Watch::default()).unwrap();
-    let record = audit_json(&bodies, &options, &found);
+    let record = serde_json::to_value(audit_json(&bodies, &options, &found)).unwrap();
     assert_eq!(told["audit"], record);
     assert!(found.pairs.len() > 20, "{:?}", found.counts);
     let views = told["views"].as_array().unwrap();

@@ -4,6 +4,7 @@
 //! - `colltrans help json` lists the fields, and `docs/answers.schema.json` defines them.
 
 use colltrans::solid::SolidDepth;
+use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
 use super::{Audit, AuditOptions, AuditedPair, Interference, PairProof};
@@ -84,20 +85,20 @@ fn known_depth(pair: &AuditedPair) -> Option<&SolidDepth> {
     pair.finding.interference().and_then(Interference::known_depth)
 }
 
-/// Returns an audit as JSON.
-pub fn audit_json(bodies: &Bodies, options: &AuditOptions, audit: &Audit) -> Value {
+/// Returns an audit as JSON, to be written pair by pair. As one value, many pairs take twenty times the memory of the
+/// text.
+pub fn audit_json<'a>(
+    bodies: &'a Bodies<'_>,
+    options: &'a AuditOptions,
+    audit: &'a Audit,
+) -> impl Serialize + use<'a> {
     let assembly = bodies.assembly();
     let counts = audit.counts;
     let levels = options.levels().iter();
     let levels = levels.map(|level| json!({ "groups": level.names, "length": level.length }));
-    json!({
-        "parts": assembly.parts().iter().map(part_json).collect::<Vec<_>>(),
-        "unit": assembly.unit(),
-        "tolerance": bodies.fit().tolerance(),
-        "within": options.within,
-        "levels": levels.collect::<Vec<_>>(),
-        "allow_contact": options.allow_contact,
-        "counts": {
+    AuditRecord {
+        allow_contact: options.allow_contact,
+        counts: json!({
             "examined": counts.examined,
             "ignored": counts.ignored,
             "interfering": counts.interfering,
@@ -105,10 +106,41 @@ pub fn audit_json(bodies: &Bodies, options: &AuditOptions, audit: &Audit) -> Val
             "touching": counts.touching,
             "near": counts.near,
             "violations": counts.violations,
-        },
-        "pairs": audit.pairs.iter().map(|pair| pair_json(assembly, pair)).collect::<Vec<_>>(),
-        "notes": assembly.notes(),
-    })
+        }),
+        levels: levels.collect(),
+        notes: assembly.notes(),
+        pairs: PairRecords { assembly, audit },
+        parts: assembly.parts().iter().map(part_json).collect(),
+        tolerance: bodies.fit().tolerance(),
+        unit: assembly.unit(),
+        within: options.within,
+    }
+}
+
+/// An audit in JSON, with its fields in the order of their names.
+#[derive(Serialize)]
+struct AuditRecord<'a> {
+    allow_contact: bool,
+    counts: Value,
+    levels: Vec<Value>,
+    notes: &'a [String],
+    pairs: PairRecords<'a>,
+    parts: Vec<Value>,
+    tolerance: f64,
+    unit: Option<&'a str>,
+    within: f64,
+}
+
+/// The pairs of an audit, each of which becomes JSON when it is written.
+struct PairRecords<'a> {
+    assembly: &'a Assembly,
+    audit: &'a Audit,
+}
+
+impl Serialize for PairRecords<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.audit.pairs.iter().map(|pair| pair_json(self.assembly, pair)))
+    }
 }
 
 /// Returns a pair as JSON.

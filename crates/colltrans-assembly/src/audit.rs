@@ -30,6 +30,7 @@ use crate::boxes::BoxTree;
 use crate::error::AssemblyError;
 use crate::part::Assembly;
 use crate::roles::PairTolerance;
+use crate::start::Overlap as StartOverlap;
 use crate::watch::{Stage, Watch};
 
 #[cfg(feature = "proofs")]
@@ -416,10 +417,34 @@ pub fn examine_pair(
     options: &AuditOptions,
 ) -> Result<AuditedPair, AssemblyError> {
     let parts = [pair[0].min(pair[1]), pair[0].max(pair[1])];
-    let finding = pair_finding(bodies, parts, options.volume).map_err(|source| {
-        let [a, b] = parts.map(|part| bodies.assembly().parts()[part].name().to_owned());
-        AssemblyError::Query { a, b, source }
-    })?;
+    let least_tolerance = || bodies.least_tolerance(parts[0], parts[1]).flatten();
+    examine(bodies, parts, options, &least_tolerance)
+}
+
+/// Examines two parts that overlap at the start like [`examine_pair`], with their known least tolerance.
+///
+/// # Errors
+/// [`AssemblyError::Query`]: a query has no answer.
+pub fn examine_overlap(
+    bodies: &Bodies,
+    overlap: &StartOverlap,
+    options: &AuditOptions,
+) -> Result<AuditedPair, AssemblyError> {
+    examine(bodies, overlap.parts, options, &|| overlap.depth)
+}
+
+/// Examines one pair of parts, the smaller index first.
+fn examine(
+    bodies: &Bodies,
+    parts: [usize; 2],
+    options: &AuditOptions,
+    least_tolerance: &dyn Fn() -> Option<f64>,
+) -> Result<AuditedPair, AssemblyError> {
+    let finding =
+        pair_finding(bodies, parts, options.volume, least_tolerance).map_err(|source| {
+            let [a, b] = parts.map(|part| bodies.assembly().parts()[part].name().to_owned());
+            AssemblyError::Query { a, b, source }
+        })?;
     let clearance = options.clearance(bodies.assembly(), parts);
     // Pairs with a role or tolerance of their own are meant to touch.
     let may_touch =
@@ -440,6 +465,7 @@ fn pair_finding(
     bodies: &Bodies,
     parts: [usize; 2],
     volume: VolumeOptions,
+    least_tolerance: &dyn Fn() -> Option<f64>,
 ) -> Result<PairFinding, QueryError> {
     let of = parts.map(|k| &bodies.assembly().parts()[k]);
     let [a, b] = of.map(|part| part.solid().at(Pose::IDENTITY));
@@ -468,7 +494,7 @@ fn pair_finding(
                 _ => None,
             };
             let place = common.point.map_or_else(|| common_point(&pair, inner), Ok)?;
-            let least_tolerance = bodies.least_tolerance(parts[0], parts[1]).flatten();
+            let least_tolerance = least_tolerance();
             let found = Interference { depth, common, least_tolerance, place };
             let interference = Box::new(found);
             match (inner, common.relation) {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use colltrans::glam::DVec3;
 use colltrans_assembly::attempts::next_attempts;
-use colltrans_assembly::audit::{AuditOptions, AuditedPair, PairFinding, examine_pair};
+use colltrans_assembly::audit::{AuditOptions, AuditedPair, PairFinding, examine_overlap};
 use colltrans_assembly::hints::find_hints;
 use colltrans_assembly::plan::{Plan, precedence_graph};
 use colltrans_assembly::report::{facts, glb, html};
@@ -369,7 +369,7 @@ fn push_overlaps(text: &mut String, findings: &Analysis) {
         };
         let _ = write!(text, "  {a}, {b}{depth}");
         if k < MOST_EXAMINED {
-            let found = examine_pair(findings.bodies, o.parts, &AuditOptions::default());
+            let found = examine_overlap(findings.bodies, o, &AuditOptions::default());
             let finding = found
                 .map_or_else(escape_line, |found| finding_text(findings.bodies.assembly(), &found));
             let _ = write!(text, ": {finding}");

@@ -49,8 +49,12 @@ PLACES = [
     ("web/package.json", r'(?m)(^  "version": )"([^"]+)"'),
     ("web/package-lock.json", r'("name": "colltrans-page",\s+"version": )"([^"]+)"'),
     ("CITATION.cff", r"(?m)(^version: )(\S+)$"),
+    ("web/package/package.json", r'(?m)(^  "version": )"([^"]+)"'),
+    ("web/package-lock.json", r'("package": \{\s+"name": "colltrans",\s+"version": )"([^"]+)"'),
     (".github/ISSUE_TEMPLATE/*.yml", r"(placeholder: colltrans )([^,\s]+)"),
 ]
+# Folders of packages that are not crates.
+OTHER_PACKAGES = ("python", "web/package")
 # Files that need not have a version.
 OPTIONAL = ("crates/*/Cargo.toml", ".github/ISSUE_TEMPLATE/*.yml")
 
@@ -97,7 +101,8 @@ def check(root: Path, tag: str | None) -> str:
     if f'date-released: "{date}"' not in (root / "CITATION.cff").read_text(encoding="utf-8"):
         raise Failure(f"CITATION.cff: date-released is not {date}, the date in {CHANGELOG}")
     for licence in LICENCES:
-        for copy in [root / "python" / licence, *(p.parent / licence for p in published(root))]:
+        others = [root / folder / licence for folder in OTHER_PACKAGES]
+        for copy in [*others, *(p.parent / licence for p in published(root))]:
             if copy.is_symlink() or not copy.is_file() or copy.read_bytes() != (root / licence).read_bytes():
                 raise Failure(f"{copy.relative_to(root)} is not a copy of {licence}")
     if tag is not None:
@@ -153,6 +158,7 @@ def set_repository(root: Path, url: str) -> None:
     old = repository(root)
     if old is not None:
         named = ["Cargo.toml", "python/pyproject.toml", "python/README.md", "python/conda/recipe.yaml", "CITATION.cff"]
+        named.append("web/package/package.json")
         for name in named:
             edit(root / name, lambda text: text.replace(old, url))
         return
@@ -169,6 +175,9 @@ def set_repository(root: Path, url: str) -> None:
 
     edit(root / "python/README.md", lambda text: RELATIVE_LINK.sub(absolute, text))
     edit(root / "python/conda/recipe.yaml", lambda text: text.replace("about:\n", f"about:\n  repository: {url}\n", 1))
+    field = f'  "repository": {{ "type": "git", "url": "git+{url}.git", "directory": "web/package" }},\n'
+    after = '  "author": "The colltrans developers",\n'
+    edit(root / "web/package/package.json", lambda text: text.replace(after, f"{after}{field}", 1))
     edit(root / "CITATION.cff", lambda text: text.replace("license:\n", f'repository-code: "{url}"\nlicense:\n', 1))
 
 
@@ -247,6 +256,15 @@ def check_package(root: Path, path: Path) -> None:
         readme = (root / "python/README.md").read_text(encoding="utf-8")
         need(fields.rstrip().endswith(readme.rstrip()), "the description is not python/README.md")
         need(repository(root) is None or not RELATIVE_LINK.search(fields), "the description has relative links")
+    if path.suffix == ".tgz":
+        about = json.loads(files["package.json"])
+        for field in ("author", "description", "license", "keywords", "exports", "engines"):
+            need(bool(about.get(field)), f"no {field} in package.json")
+        others = files.get("dist/LICENSE-THIRD-PARTY", b"")
+        need(b"\nglam " in others, "no LICENSE-THIRD-PARTY: build it by web/package/build.mjs")
+        readme = files.get("README.md", b"").decode("utf-8")
+        need(readme.startswith("# colltrans\n"), "README.md is not its own")
+        need(not RELATIVE_LINK.search(readme), "README.md has relative links")
     if path.suffix == ".crate":
         manifest = files["Cargo.toml"].decode("utf-8")
         for field in ("authors", "description", "license", "readme", "keywords", "categories"):

@@ -260,7 +260,8 @@ def rust(out: Path) -> None:
 
 def page(out: Path, built: Path | None) -> None:
     if built is None:
-        run("node", "build.mjs", "--install", cwd=ROOT / "web", stdout=None)
+        for script in ["package/build.mjs", "build.mjs"]:
+            run("node", script, "--install", cwd=ROOT / "web", stdout=None)
         built = ROOT / "web" / "dist"
     shutil.copytree(built, out / "page")
 

@@ -16,8 +16,9 @@ export const built = process.env.CARGO_TARGET_DIR ?? join(dirname(fileURLToPath(
 
 const TARGET = "wasm32-unknown-unknown";
 
-/** Unstable options, which Debian's compiler accepts here: panic messages without source locations, and short debug
- * output. Only the last message of a stopped library has either, and both cost bytes that every visitor loads. */
+/** Unstable options, which a stable compiler accepts with RUSTC_BOOTSTRAP: panic messages without source locations, and
+ * short debug output. Only the last message of a stopped library has either, and both cost bytes that every visitor
+ * loads. */
 const SMALLER = "-Zlocation-detail=none -Zfmt-debug=shallow";
 
 /** Linker option: writes function numbers in as few bytes as needed instead of five. */
@@ -113,7 +114,7 @@ export class Missing extends Error {}
 
 /** Returns the environment for cargo; installs the toolchain if `install` is set. */
 export function toolchain(install = process.argv.includes("--install")) {
-  if (installed()) return { CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: LINKED };
+  if (installed()) return { RUSTC_BOOTSTRAP: "1", CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: `${SMALLER} ${LINKED}` };
   const folder = process.env.COLLTRANS_WASM_TOOLCHAIN ?? join(homedir(), ".cache/colltrans-wasm-toolchain");
   const found = unpacked(folder);
   if (found) return found;

@@ -1,6 +1,7 @@
 """Tests that all packages have one version and a change entry, and the recipe for conda."""
 
 import importlib.util
+import json
 import re
 import shutil
 import subprocess
@@ -60,7 +61,7 @@ def test_every_crate_is_published_with_licences_and_a_readme_of_its_own() -> Non
 def copy_of_what_a_release_changes(folder: Path) -> Path:
     """Copies the files with a version, and those of each package that a release needs."""
     patterns = {pattern for pattern, _ in release.PLACES}
-    patterns |= {"CHANGELOG.md", "LICENSE-*", "*/LICENSE-*", "crates/*/LICENSE-*"}
+    patterns |= {"CHANGELOG.md", "LICENSE-*", "*/LICENSE-*", "*/*/LICENSE-*"}
     patterns |= {"python/README.md", "crates/*/Cargo.toml"}
     for path in {path for pattern in patterns for path in ROOT.glob(pattern)}:
         to = folder / path.relative_to(ROOT)
@@ -102,6 +103,8 @@ def test_two_commands_and_a_tag_prepare_a_release(tmp_path: Path) -> None:
         assert python["project"]["urls"]["Repository"] == url
         manifests = [path.read_text(encoding="utf-8") for path in release.published(root)]
         assert all("\nrepository.workspace = true\n" in text for text in manifests)
+        npm = json.loads((root / "web/package/package.json").read_text(encoding="utf-8"))
+        assert npm["repository"]["url"] == f"git+{url}.git"
         readme = (root / "python/README.md").read_text(encoding="utf-8")
         targets = re.findall(rf"\]\({url}/blob/main/([^)]+)\)", readme)
         assert len(targets) > 3 and all((ROOT / target).is_file() for target in targets)
@@ -121,6 +124,7 @@ def test_two_commands_and_a_tag_prepare_a_release(tmp_path: Path) -> None:
             "crates/colltrans-wasm/Cargo.lock: 9.9.9",
         ),
         ("web/package.json", "", "9.9.9", "web/package.json: 9.9.9"),
+        ("web/package/package.json", "", "9.9.9", "web/package/package.json: 9.9.9"),
         ("CITATION.cff", "date-released: ", "date-released: x", "date-released is not"),
         ("CHANGELOG.md", "## ", "## x", "no section"),
         ("python/LICENSE-MIT", "MIT", "BSD", "python/LICENSE-MIT is not a copy"),
@@ -162,7 +166,7 @@ def test_the_workflow_checks_the_tag_first_and_publishes_after_an_approval() -> 
     assert '.ci/release.py check --tag "$TAG"' in jobs.pop("tag")
     assert all("\n    needs: " in f"\n{job}" for job in jobs.values())
     publishing = [job for job in jobs.values() if "id-token: write" in job]
-    assert len(publishing) == 2
+    assert len(publishing) == 3
     for job in [*publishing, jobs["draft"]]:
         assert "\n    if: github.ref_type == 'tag'\n" in job
     for job in publishing:

@@ -105,6 +105,20 @@ impl Mesh {
         (kept, faces)
     }
 
+    /// Merges vertices that denote the same point in a number format: vertices with equal coordinates, then those on
+    /// open edges that rounding explains. Merged vertices remain in the list, unused, so that indices are those of the
+    /// input.
+    ///
+    /// Readers of files do this; it is meant for meshes from other sources, for example of a graphics library, which
+    /// repeats a vertex for each of its normals.
+    #[must_use]
+    pub fn with_merged_vertices(self, format: NumberFormat) -> Self {
+        let mut mesh = self.with_format(format);
+        let precision = Precision { single: format == NumberFormat::Single, text: false };
+        mesh.merge_open_edges(None, precision, PlacePolicy::Kept);
+        mesh
+    }
+
     /// Merges duplicate vertices along open edges. `None` selects the default tolerance.
     pub(crate) fn merge_open_edges(
         &mut self,

@@ -1,5 +1,6 @@
 //! The answer to a question.
 
+use glam::DVec3;
 use serde::Serialize;
 use serde_json::json;
 
@@ -33,6 +34,23 @@ impl Answer {
     /// Serialises an answer without binary numbers.
     pub(crate) fn from_facts<T: Serialize>(facts: &T) -> Self {
         Self { text: serde_json::to_vec(facts).unwrap_or_default(), numbers: Vec::new() }
+    }
+
+    /// Returns an answer of doubles alone.
+    pub(crate) fn from_numbers(numbers: impl IntoIterator<Item = f64>) -> Self {
+        let numbers = numbers.into_iter().flat_map(f64::to_le_bytes).collect();
+        Self { text: Vec::new(), numbers }
+    }
+
+    /// Returns an answer of points, three doubles each.
+    pub(crate) fn from_points(points: &[DVec3]) -> Self {
+        Self::from_numbers(points.iter().flat_map(DVec3::to_array))
+    }
+
+    /// Returns an answer of triangles, three 32-bit indices each.
+    pub(crate) fn from_triangles(triangles: &[[u32; 3]]) -> Self {
+        let numbers = triangles.iter().flatten().flat_map(|index| index.to_le_bytes()).collect();
+        Self { text: Vec::new(), numbers }
     }
 }
 

@@ -12,6 +12,8 @@
 //! answers with those of a browser byte for byte, because numbers are written with enough digits to restore
 //! their bits.
 //!
+//! [`package`] is the library of the npm package, with an interface of its own.
+//!
 //! Features: `min-gap` compiles the module [`motion`] and the library's minimum gaps, which rounded bodies need;
 //! `assembly` compiles the module [`assembly`] and the whole library. The other modules are smaller without them.
 //! [`page`] is linked twice, without `min-gap` and with it: the page loads the second one for a body that a name
@@ -27,6 +29,7 @@ pub mod found;
 mod highlight;
 #[cfg(feature = "min-gap")]
 pub mod motion;
+pub mod package;
 pub mod page;
 pub mod picture;
 mod placing;

@@ -158,7 +158,7 @@ def set_repository(root: Path, url: str) -> None:
     old = repository(root)
     if old is not None:
         named = ["Cargo.toml", "python/pyproject.toml", "python/README.md", "python/conda/recipe.yaml", "CITATION.cff"]
-        named.append("web/package/package.json")
+        named += ["web/package/package.json", "web/src/index.html"]
         for name in named:
             edit(root / name, lambda text: text.replace(old, url))
         return
@@ -178,6 +178,8 @@ def set_repository(root: Path, url: str) -> None:
     field = f'  "repository": {{ "type": "git", "url": "git+{url}.git", "directory": "web/package" }},\n'
     after = '  "author": "The colltrans developers",\n'
     edit(root / "web/package/package.json", lambda text: text.replace(after, f"{after}{field}", 1))
+    link = f'<a href="{url}">Source</a>'
+    edit(root / "web/src/index.html", lambda text: text.replace("<!-- source -->", link, 1))
     edit(root / "CITATION.cff", lambda text: text.replace("license:\n", f'repository-code: "{url}"\nlicense:\n', 1))
 
 

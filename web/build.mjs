@@ -35,7 +35,7 @@ const ATTEMPTS = 10;
 /** The modules of the page by the features of `colltrans-wasm`. Fewer features give smaller modules. */
 const MODULES = {
   "": ["page", "page_found", "page_picture"],
-  "min-gap": ["page_distance", "page_motion", "page_round"],
+  "min-gap": ["page_motion", "page_all"],
   assembly: ["page_assembly"],
 };
 
@@ -58,6 +58,8 @@ await Promise.all(Object.values(MODULES).flat().map(async (example) => {
   const made = join(built, "wasm32-unknown-unknown/page/examples", `${example}.wasm`);
   copyFileSync(await optimised(made), join(out, `${example.replace("page", "colltrans")}.wasm`));
 }));
+// The npm package, whose module finds its library next to it.
+copyFileSync(join(here, "package/dist/bodies.wasm"), join(out, "bodies.wasm"));
 copyFileSync(join(here, "src/index.html"), join(out, "index.html"));
 cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
 // Files that the page links to.
@@ -66,7 +68,7 @@ cpSync(join(root, "docs/figures"), join(out, "figures"), { recursive: true });
 mkdirSync(join(out, "source"));
 for (const file of ["minimise.rs", "cell.rs", "region.rs"]) copyFileSync(join(root, "crates/colltrans-convex/src/solve/cta", file), join(out, "source", file));
 await build({
-  entryPoints: ["main.ts", "worker.ts", "style.css", "tabs.css"].map((file) => join(here, "src", file)),
+  entryPoints: ["main.ts", "worker.ts", "near-worker.ts", "style.css", "tabs.css"].map((file) => join(here, "src", file)),
   bundle: true,
   minify: true,
   format: "esm",

@@ -62,7 +62,7 @@ def copy_of_what_a_release_changes(folder: Path) -> Path:
     """Copies the files with a version, and those of each package that a release needs."""
     patterns = {pattern for pattern, _ in release.PLACES}
     patterns |= {"CHANGELOG.md", "LICENSE-*", "*/LICENSE-*", "*/*/LICENSE-*"}
-    patterns |= {"python/README.md", "crates/*/Cargo.toml"}
+    patterns |= {"python/README.md", "crates/*/Cargo.toml", "web/src/index.html"}
     for path in {path for pattern in patterns for path in ROOT.glob(pattern)}:
         to = folder / path.relative_to(ROOT)
         to.parent.mkdir(parents=True, exist_ok=True)
@@ -105,6 +105,8 @@ def test_two_commands_and_a_tag_prepare_a_release(tmp_path: Path) -> None:
         assert all("\nrepository.workspace = true\n" in text for text in manifests)
         npm = json.loads((root / "web/package/package.json").read_text(encoding="utf-8"))
         assert npm["repository"]["url"] == f"git+{url}.git"
+        page = (root / "web/src/index.html").read_text(encoding="utf-8")
+        assert f'<a href="{url}">Source</a>' in page
         readme = (root / "python/README.md").read_text(encoding="utf-8")
         targets = re.findall(rf"\]\({url}/blob/main/([^)]+)\)", readme)
         assert len(targets) > 3 and all((ROOT / target).is_file() for target in targets)

@@ -1,7 +1,7 @@
 // A library in a worker: takes questions and returns answers, in order.
 
 import type {
-  PageAdd, PageAlong, PageAudit, PageBody, PageCast, PageCertify, PageDistance, PageDraw, PageError, PageFit, PageLevels, PageLit, PageLoad,
+  PageAdd, PageAlong, PageAudit, PageBody, PageCast, PageCertify, PageDraw, PageError, PageFit, PageLevels, PageLit, PageLoad,
   PageMap, PageMotion, PageParts, PagePlace, PagePlan, PageProve, PageSearch, PageVerify, Separation,
 } from "./answers";
 import type { Pose, Vec } from "./math";
@@ -28,7 +28,6 @@ interface Answers {
   clashes: { title: string };
   draw: PageDraw;
   place: PagePlace;
-  distance: PageDistance;
   motion: PageMotion;
   prove: PageProve;
 }
@@ -127,7 +126,7 @@ export class Engine {
   private next = 1;
 
   /** Starts the worker at once, so that the library loads while the page is still being built. */
-  constructor(readonly library: "colltrans" | "colltrans_assembly" | "colltrans_distance" | "colltrans_found" | "colltrans_motion" | "colltrans_picture" | "colltrans_round") {
+  constructor(readonly library: "colltrans" | "colltrans_assembly" | "colltrans_found" | "colltrans_motion" | "colltrans_picture" | "colltrans_all") {
     this.running();
   }
 

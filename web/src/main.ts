@@ -16,6 +16,7 @@ import type { Found } from "./found";
 import type { Near, Nearness } from "./near";
 import { AnswerPanel, type Picture, type Refusal, type Shown } from "./panel";
 import { isShape } from "./primitive";
+import { isSolid } from "./share";
 import type { Source } from "./placing";
 import { Shadow } from "./shadow";
 import { IN_FILE, type State, TABS, type Tab, fromExample, fromHash, toHash } from "./state";
@@ -30,8 +31,19 @@ import type { Tool } from "./view/handles";
 const PROVED_SOON = 20_000;
 /** The example that is an assembly. */
 const GEARBOX = "gearbox";
-/** The library that has rounded bodies. */
-const ROUND = "colltrans_round";
+/** The library that has all bodies. */
+const ALL = "colltrans_all";
+/** Checks whether a body is not in the library of the first answer, which has convex polyhedra alone. */
+const needsAll = (file: string, take: Take) => isShape(file) || isSolid(take);
+
+/** Assigns up to two files to the bodies, the first one to the given body. */
+function bySlot(files: File[], first: Slot = "moving"): [Slot, File][] {
+  const second: Slot = first === "moving" ? "fixed" : "moving";
+  return ([[first, files[0]], [second, files[1]]] as const).filter((one): one is [Slot, File] => !!one[1]);
+}
+
+/** Checks whether a file is one of an example. */
+const isOfExample = (file: string) => Object.values(EXAMPLES).some((e) => e.moving.file === file || e.fixed.file === file);
 
 class Page {
   private state: State = fromHash(location.hash);
@@ -47,7 +59,7 @@ class Page {
   private solidProof: PageCertify | undefined;
   private proving = 0;
   private readonly refusals: Partial<Record<Slot, Refusal>> = {};
-  private engine = new Engine(SLOTS.some((slot) => isShape(this.state.parts[slot].file)) ? ROUND : "colltrans");
+  private engine = new Engine(SLOTS.some((slot) => needsAll(this.state.parts[slot].file, this.state.parts[slot].take)) ? ALL : "colltrans");
   /** The library that has the body of a slot. */
   private readonly placedIn: Record<Slot, Engine | undefined> = { moving: undefined, fixed: undefined };
   /** The library that was used before. */
@@ -99,6 +111,7 @@ class Page {
     this.panel = new AnswerPanel({
       change: (change) => this.change(change),
       choose: (slot) => this.choose(slot),
+      chooseBoth: () => this.chooseBoth(),
       take: (slot, take) => void this.take(slot, take),
       shape: (slot, name) => this.shape(slot, name),
       dismiss: (slot) => this.restore(slot),
@@ -274,8 +287,8 @@ class Page {
       this.nearAgain = true;
       return;
     }
-    const { moving, fixed } = this.sources;
-    if (!this.state.near || !moving || !fixed || !this.bodies.moving || !this.bodies.fixed) {
+    const { moving, fixed } = this.bodies;
+    if (!this.state.near || !moving || !fixed) {
       if (this.near) {
         this.near = undefined;
         this.show();
@@ -286,7 +299,7 @@ class Page {
     const { pairs } = this;
     try {
       this.nearness ??= new (await import("./near")).Near();
-      const near = await this.nearness.ask({ moving, fixed }, structuredClone(this.pair()));
+      const near = await this.nearness.ask({ moving: moving.body, fixed: fixed.body }, this.pair());
       if (pairs === this.pairs) this.near = near;
     } catch (error) {
       this.near = undefined;
@@ -357,7 +370,7 @@ class Page {
     this.asInFile[slot] = false;
     try {
       const url = new URL(`data/${file}`, document.baseURI);
-      const known = Object.values(EXAMPLES).some((e) => e.moving.file === file || e.fixed.file === file);
+      const known = isOfExample(file);
       // A file of the visitor is still available when an address, or the back button, needs it again.
       const made = this.made[slot];
       if (!known && this.bodies[slot] && made?.file === file && made.take === take) return;
@@ -377,7 +390,7 @@ class Page {
 
   private async load(slot: Slot, name: string, take: Take, file?: ArrayBuffer) {
     this.waiting(+1);
-    if (isShape(name) && this.engine.library !== ROUND) [this.replaced, this.engine] = [this.engine, new Engine(ROUND)];
+    if (needsAll(name, take) && this.engine.library !== ALL) [this.replaced, this.engine] = [this.engine, new Engine(ALL)];
     const before = this.placedIn[slot];
     this.placedIn[slot] = this.engine;
     try {
@@ -496,8 +509,9 @@ class Page {
   /** Uses the rejected or current file, or a body of another name, in another way. */
   private async take(slot: Slot, take: Take, name = this.refusals[slot]?.name ?? this.state.parts[slot].file) {
     try {
-      // The library may lack a file that another one refused.
-      const isFile = !isShape(name) && (this.refusals[slot] || this.placedIn[slot] !== this.engine);
+      // The library may lack a file that another one refused, and another library is without files.
+      const isOther = this.placedIn[slot] !== this.engine || (needsAll(name, take) && this.engine.library !== ALL);
+      const isFile = !isShape(name) && (this.refusals[slot] || isOther);
       await this.load(slot, name, take, isFile ? await this.given[slot]?.() : undefined);
       await this.changedBody();
     } catch (error) {
@@ -519,6 +533,12 @@ class Page {
       const file = input.files?.[0];
       if (file) void this.open([[slot, file]]);
     });
+    input.click();
+  }
+
+  private chooseBoth() {
+    const input = h("input", { type: "file", accept: ACCEPTED, multiple: true });
+    input.addEventListener("change", () => void this.open(bySlot([...(input.files ?? [])])));
     input.click();
   }
 
@@ -545,7 +565,8 @@ class Page {
       element.setAttribute("aria-selected", String(state.tab === tab));
       element.tabIndex = state.tab === tab ? 0 : -1;
     }
-    const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, solidProof: this.solidProof, near: this.near, verdict: this.verdict };
+    const isExample = SLOTS.every((slot) => isOfExample(state.parts[slot].file) && !this.refusals[slot]);
+    const shown: Shown = { state, isExample, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, solidProof: this.solidProof, near: this.near, verdict: this.verdict };
     this.panel.show(shown);
     if (state.tab !== "answer") void this.openTab(state.tab);
     if (this.extras !== state.tab) view?.clearExtra();
@@ -713,8 +734,7 @@ class Page {
         return;
       }
       const first: Slot = (over(event.target)?.dataset.slot as Slot | undefined) ?? "moving";
-      const second: Slot = first === "moving" ? "fixed" : "moving";
-      const given = ([[first, files[0]], [second, files[1]]] as const).filter((one): one is [Slot, File] => !!one[1]);
+      const given = bySlot(files, first);
       if (given.length) void this.open(given);
     });
   }

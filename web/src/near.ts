@@ -1,37 +1,50 @@
-// The distance or the depth of the bodies at their poses: queried from a library of its own, described and drawn.
+// The distance or the depth of the bodies at their poses: computed by the npm package, described and drawn.
 
+import type { Depth, Distance } from "colltrans";
 import { MeshBasicMaterial, type Object3D } from "three";
-import type { DepthAnswer, DistanceAnswer, PageDistance } from "./answers";
-import { Engine, type Pair, type Slot } from "./engine";
+import { type Body, type Pair, type Slot } from "./engine";
+import { SLOTS } from "./examples";
 import { type Vec, add, short, shown, times } from "./math";
-import { Placing, type Source } from "./placing";
+import type { NearAnswer, NearBody, NearQuestion } from "./near-worker";
 import { type Frame, type Label, above, ball, inPicture, line, rod } from "./view/shapes";
 import { feature } from "./words";
 
 /** The text and the drawing next to the answer. */
 export interface Nearness {
-  told: PageDistance;
+  told: NearAnswer;
   sentence: string;
   rows: [string, string][];
   draw(frame: Frame): { parts: Object3D[]; labels: Label[] };
 }
 
 export class Near {
-  private readonly engine = new Engine("colltrans_distance");
-  private readonly placing = new Placing(this.engine);
+  private readonly worker = new Worker(new URL("near-worker.js", import.meta.url), { type: "module", name: "near" });
+  /** The bodies that the worker has. */
+  private readonly sent: Partial<Record<Slot, Body>> = {};
 
-  async ask(sources: Record<Slot, Source>, { moving_pose, fixed_pose }: Pair): Promise<Nearness> {
-    await this.placing.place(sources);
-    const { facts } = await this.engine.ask({ do: "distance", moving_pose, fixed_pose });
-    return { told: facts, ...say(facts), draw: (frame) => draw(frame, facts) };
+  /** Asks one question at a time. */
+  async ask(bodies: Record<Slot, Body>, { moving_pose, fixed_pose }: Pair): Promise<Nearness> {
+    const fresh = SLOTS.map((slot) => (this.sent[slot] === bodies[slot] ? undefined : nearBody(bodies[slot])));
+    for (const slot of SLOTS) delete this.sent[slot];
+    const told = await new Promise<NearAnswer>((resolve, reject) => {
+      this.worker.onmessage = ({ data }: MessageEvent<NearAnswer | { error: string }>) => ("error" in data ? reject(new Error(data.error)) : resolve(data));
+      this.worker.onerror = (event) => reject(new Error(event.message || "the worker could not be started"));
+      this.worker.postMessage({ bodies: fresh, poses: [moving_pose, fixed_pose] } satisfies NearQuestion);
+    });
+    Object.assign(this.sent, bodies);
+    return { told, ...say(told), draw: (frame) => draw(frame, told) };
   }
 }
 
-const proven = ({ lower, upper }: DistanceAnswer | DepthAnswer) => `${short(lower ?? 0, 15)} to ${short(upper ?? 0, 15)}`;
+/** Returns the data of a body; of a rounded body those of its core. */
+const nearBody = ({ facts, vertices, triangles }: Body): NearBody =>
+  ({ kind: facts.kind, vertices: vertices.slice(0, 3 * facts.vertices), triangles, closed: facts.closed, radius: facts.radius });
 
-function say({ distance, depth }: PageDistance): Pick<Nearness, "sentence" | "rows"> {
+const proven = ({ lower, upper }: Distance | Depth) => `${short(lower, 15)} to ${short(upper, 15)}`;
+
+function say({ distance, depth }: NearAnswer): Pick<Nearness, "sentence" | "rows"> {
   if (!depth) {
-    const { upper = 0, features } = distance;
+    const { upper, features } = distance;
     return {
       sentence: `At their poses they are ${short(upper)} apart.`,
       rows: [
@@ -41,26 +54,21 @@ function say({ distance, depth }: PageDistance): Pick<Nearness, "sentence" | "ro
       ],
     };
   }
-  const { upper, direction, start_overlaps } = depth;
-  if (direction && upper) {
-    return {
-      sentence: `At their poses they overlap: the shortest way out is ${short(upper)} long.`,
-      rows: [["depth now", short(upper, 12)], ["proven", proven(depth)], ["way out", shown(direction as Vec)]],
-    };
-  }
-  const tolerance = start_overlaps?.[0]?.least_tolerance;
+  const { upper, direction, overlaps } = depth;
+  if (!overlaps) return { sentence: "At their poses they touch.", rows: [] };
+  if (!direction || !Number.isFinite(upper)) return { sentence: "At their poses they overlap.", rows: [] };
   return {
-    sentence: start_overlaps ? `At their poses they overlap${tolerance ? `: with a tolerance of ${short(tolerance)} they would not` : ""}.` : "At their poses they touch.",
-    rows: tolerance ? [["depth now", short(tolerance, 9)]] : [],
+    sentence: `At their poses they overlap: the shortest way out is ${short(upper)} long.`,
+    rows: [["depth now", short(upper, 12)], ["proven", proven(depth)], ["way out", shown(direction as unknown as Vec)]],
   };
 }
 
 /** Draws the nearest points with a segment, or the shortest way out from a common point. */
-function draw(frame: Frame, { distance, depth }: PageDistance): { parts: Object3D[]; labels: Label[] } {
-  const [from, to] = (distance.points ?? []) as Vec[];
+function draw(frame: Frame, { distance, depth }: NearAnswer): { parts: Object3D[]; labels: Label[] } {
+  const [from, to] = [distance.pointOnMoving, distance.pointOnFixed] as unknown as (Vec | null)[];
   if (!from || !to) return { parts: [], labels: [] };
   const { size, colours } = frame;
-  const [start, way] = [inPicture(frame, from), depth?.direction as Vec | undefined];
+  const [start, way] = [inPicture(frame, from), (depth?.direction ?? undefined) as Vec | undefined];
   const dot = () => new MeshBasicMaterial({ color: colours.normal });
   const end = inPicture(frame, way ? add(from, times(way, depth?.upper ?? 0)) : to);
   const long = start.distanceTo(end);

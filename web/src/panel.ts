@@ -27,6 +27,8 @@ export interface Refusal {
 
 export interface Shown {
   state: State;
+  /** Whether both bodies are those of an example. */
+  isExample: boolean;
   answer: PageCast | undefined;
   /** The reason why there is no answer. */
   error: string | undefined;
@@ -45,6 +47,8 @@ export interface Shown {
 export interface Actions {
   change(change: (state: State) => void): void;
   choose(slot: Slot): void;
+  /** Lets the visitor choose the files of both bodies. */
+  chooseBoth(): void;
   take(slot: Slot, take: Take): void;
   /** Uses a body that a name describes. */
   shape(slot: Slot, name: string): void;
@@ -64,6 +68,8 @@ const OFFER: Record<Take, string> = {
 
 export class AnswerPanel {
   readonly element = h("div", { class: "panel-parts", style: "display: contents" });
+  /** The invitation to drop parts, next to the example with which the page opens. */
+  private readonly invitation: HTMLElement;
   private readonly said = h("section", { class: "said", "aria-live": "polite" });
   private readonly facts = h("dl");
   private readonly proof = h("div");
@@ -113,7 +119,12 @@ export class AnswerPanel {
     this.proofCard = this.card("Proof", true, this.proof, h("div", { class: "row" }, this.check, this.verdict));
     const bodies = this.card("Bodies", true, this.parts, shapeForm((slot, name) => act.shape(slot, name)));
     bodies.classList.add("bodies");
+    this.invitation = h("section", { class: "card invitation" },
+      h("h2", {}, "Drop your two parts here"),
+      h("p", {}, `${names("or")}: the first one moves until it meets the second one. Nothing leaves this browser. Until then, this is an example.`),
+      h("button", { class: "small main", onclick: () => act.chooseBoth() }, "Choose two files…"));
     this.element.append(
+      this.invitation,
       this.said,
       h("section", { class: "card" }, this.facts),
       this.proofCard,
@@ -195,6 +206,7 @@ export class AnswerPanel {
   show(shown: Shown) {
     this.now = shown;
     const { state, answer, error } = shown;
+    this.invitation.hidden = !shown.isExample;
     this.showSaid(shown);
     for (const { input, read } of this.fields) {
       if (input === document.activeElement) continue;

@@ -15,7 +15,7 @@ export interface Said {
 }
 
 /** Describes a feature, with the vertex numbers of its file. */
-export function feature(of: Feature): string {
+export function feature(of: { kind: Feature["kind"]; vertices: readonly number[] }): string {
   const { length } = of.vertices;
   const list = length > 8 ? `${of.vertices.slice(0, 8).join(" ")} … (${length} in all)` : of.vertices.join(" ");
   if (of.kind === "vertex") return `vertex ${list}`;

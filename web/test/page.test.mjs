@@ -237,3 +237,33 @@ test("first tab works without a network after loading", async () => {
   await page.waitForSelector("#tab-answer[aria-selected=true]");
   await page.context().close();
 });
+
+test("page opens with an invitation, and two files are chosen at once", async () => {
+  const page = await at.open();
+  await page.waitForSelector("text=Drop your two parts here");
+  const files = ["moving", "fixed"].map((name, k) => {
+    const path = join(folder, `${name}.off`);
+    writeFileSync(path, boxes([[0, 0, 5 - 5 * k], [1, 1, 6 - 5 * k]]));
+    return path;
+  });
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("text=Choose two files")]);
+  assert.ok(chooser.isMultiple());
+  await chooser.setFiles(files);
+  await page.waitForFunction(() => window.colltrans.probe().state.parts.fixed.file === "fixed.off" && window.colltrans.probe().answer);
+  assert.ok(await page.isHidden("text=Drop your two parts here"));
+  await page.context().close();
+});
+
+test("every control has a name on a phone, in every tab", async () => {
+  const phone = await at.open("", { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
+  for (const tab of ["answer", "motion", "found", "assembly"]) {
+    await phone.tap(`#tab-${tab}`);
+    await phone.waitForFunction((tab) => window.colltrans.probe().state.tab === tab, tab);
+    await phone.waitForTimeout(500);
+    const tree = await phone.locator("body").ariaSnapshot();
+    const nameless = tree.split("\n").filter((line) => /^\s*- (button|link|textbox|spinbutton|combobox|checkbox|slider|tab|radio)\b(?! ")/.test(line));
+    assert.deepEqual(nameless, [], tab);
+  }
+  assert.deepEqual(phone.complaints, []);
+  await phone.context().close();
+});

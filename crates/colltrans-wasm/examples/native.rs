@@ -9,13 +9,12 @@
 use std::error::Error;
 use std::io::{self, BufRead as _, Write as _};
 
-use colltrans_wasm::{Answers, distance, found, page, picture};
+use colltrans_wasm::{Answers, found, page, picture};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let module = std::env::args().nth(1).unwrap_or_else(|| "page".to_owned());
     match &*module {
-        "page" | "round" => answer(page::State::default()),
-        "distance" => answer(distance::State::default()),
+        "page" | "all" => answer(page::State::default()),
         "found" => answer(found::State::default()),
         "picture" => answer(picture::State),
         #[cfg(feature = "assembly")]

@@ -16,13 +16,13 @@
 //!
 //! Features: `min-gap` compiles the module [`motion`] and the library's minimum gaps, which rounded bodies need;
 //! `assembly` compiles the module [`assembly`] and the whole library. The other modules are smaller without them.
-//! [`page`] is linked twice, without `min-gap` and with it: the page loads the second one for a body that a name
-//! describes (`sphere:0.5`). `report` is only for the test of a report's viewer.
+//! [`page`] is linked twice, without `min-gap` and with it. The first one has convex polyhedra alone. The page loads
+//! the second one for a solid or a body that a name describes (`sphere:0.5`). `report` is only for the test of a
+//! report's viewer.
 
 mod answer;
 #[cfg(feature = "assembly")]
 pub mod assembly;
-pub mod distance;
 pub mod exports;
 mod fields;
 pub mod found;
@@ -32,8 +32,8 @@ pub mod motion;
 pub mod package;
 pub mod page;
 pub mod picture;
-mod placing;
 mod pose;
+mod shape;
 
 pub use answer::Answer;
 

@@ -1,6 +1,6 @@
 //! Spheres, capsules and boxes, which a name describes in place of a file, in all modules of the page.
 
-use colltrans_wasm::{Answer, Answers, distance, found, motion, page};
+use colltrans_wasm::{Answer, Answers, found, motion, page};
 use serde_json::{Value, json};
 
 const HOME: [f64; 7] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
@@ -152,17 +152,7 @@ fn names_without_a_body_are_errors_that_keep_the_old_body() {
 }
 
 #[test]
-fn distances_and_motions_accept_shapes() {
-    let place = [("sphere:0.5", "convex"), ("cube.off", "convex")];
-    for fixed in ["convex", "solid"] {
-        let mut state: distance::State = loaded("place", [place[0], ("cube.off", fixed)]);
-        let (apart, _) = ask(&mut state, &pair("distance", [3.0, 0.25, 0.125], [0.0; 3]), "");
-        let [lower, upper] = ["lower", "upper"].map(|name| number(&apart["distance"][name]));
-        assert!(lower <= 1.5 && 1.5 <= upper && upper - lower < 1e-9, "{apart}");
-        assert_eq!(apart["distance"]["points"][0], json!([2.5, 0.25, 0.125]));
-        let (deep, _) = ask(&mut state, &pair("distance", [1.25, 0.0, 0.0], [0.0; 3]), "");
-        assert_eq!(deep["distance"]["outcome"], "meeting", "{deep}");
-    }
+fn motions_accept_shapes() {
     // At an angle of 30 degrees the sphere touches the plane y = 1.5.
     for fixed in ["box:8,2,2", "cube.off"] {
         let take = if fixed == "cube.off" { "solid" } else { "convex" };

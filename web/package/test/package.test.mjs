@@ -106,6 +106,13 @@ test("answers of every question have the fields of their types", () => {
   assert.ok(Math.abs(met.value - 0.432115832) < 1e-9);
   const ball = ConvexPolyhedron.sphere([0, 0, 0], 0.5);
   assert.ok(Math.abs(cast(ball.at([0, 0, 5]), cube, [0, 0, -1]).value - 3.5) < 1e-12);
+  const block = ConvexPolyhedron.cuboid([-1, -1, -1], [1, 1, 1]);
+  for (const fixed of [block, Solid.fromPieces([block])]) {
+    const { lower, upper, pointOnMoving } = distance(ball.at([3, 0.25, 0.125]), fixed);
+    assert.ok(lower <= 1.5 && 1.5 <= upper && upper - lower < 1e-9);
+    assert.deepEqual(pointOnMoving, [2.5, 0.25, 0.125]);
+    assert.equal(distance(ball.at([1.25, 0, 0]), fixed).meets, true);
+  }
   const both = Solid.fromPieces([cube, ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 4])]);
   assert.deepEqual(both.bounds, { low: [0, 0, 0], high: [1, 1, 4] });
 });

@@ -11,7 +11,7 @@ use super::question::{Question, Slot};
 use super::{levels, search};
 use crate::Answers;
 use crate::answer::{Answer, Refusal};
-use crate::placing::body_of_name;
+use crate::shape::body_of_name;
 
 /// Two convex bodies, built from files or names.
 #[derive(Debug, Default)]

@@ -8,10 +8,10 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use super::places::{Part, Places, Slot};
 use crate::Answers;
 use crate::answer::{Answer, Refusal};
 use crate::highlight::{ContactHighlight, FeatureHighlight};
-use crate::placing::{Part, Places, Slot};
 use crate::pose::pose;
 
 /// A question.

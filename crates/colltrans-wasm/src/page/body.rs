@@ -6,12 +6,20 @@
 
 use std::borrow::Cow;
 use std::path::Path;
+#[cfg(feature = "min-gap")]
 use std::sync::OnceLock;
 
+#[cfg(feature = "min-gap")]
+use colltrans::Solid;
+#[cfg(feature = "min-gap")]
 use colltrans::solid::ShellKind;
-use colltrans::{Aabb, ConvexPolyhedron, Solid};
-use colltrans_mesh::body::{self, BodyError, BodyKind, BodyOptions, Loaded, Note, drawn_body};
-use colltrans_mesh::{Format, Mesh, sides};
+use colltrans::{Aabb, ConvexPolyhedron};
+#[cfg(feature = "min-gap")]
+use colltrans_mesh::body::Loaded;
+use colltrans_mesh::body::{self, BodyError, BodyKind, BodyOptions, Note, drawn_body};
+#[cfg(feature = "min-gap")]
+use colltrans_mesh::sides;
+use colltrans_mesh::{Format, Mesh};
 use glam::DVec3;
 use serde_json::json;
 
@@ -26,9 +34,13 @@ const DENSE: usize = 10_000;
 
 /// A body in use.
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "there are two values, which are never moved")]
+#[cfg_attr(
+    feature = "min-gap",
+    expect(clippy::large_enum_variant, reason = "there are two values, which are never moved")
+)]
 pub(crate) enum Part {
     Convex(Hull),
+    #[cfg(feature = "min-gap")]
     Solid(Facets),
 }
 
@@ -37,10 +49,12 @@ pub(crate) enum Part {
 pub(crate) struct Hull {
     pub(crate) body: ConvexPolyhedron,
     /// The body as a solid, built on the first query with a solid.
+    #[cfg(feature = "min-gap")]
     solid: OnceLock<Result<Facets, String>>,
 }
 
 /// A solid.
+#[cfg(feature = "min-gap")]
 #[derive(Debug)]
 pub(crate) struct Facets {
     pub(crate) body: Solid,
@@ -48,6 +62,7 @@ pub(crate) struct Facets {
     pub(crate) precision: f64,
 }
 
+#[cfg(feature = "min-gap")]
 impl Part {
     pub(crate) fn facets(&self) -> Result<&Facets, String> {
         match self {
@@ -117,6 +132,11 @@ pub(crate) fn build_body(
             let loaded = body::convex(mesh, &options).map_err(|error| refusal(name, &error))?;
             Ok(convex_part(loaded.body, &loaded.notes))
         }
+        #[cfg(not(feature = "min-gap"))]
+        BodyKind::Solid | BodyKind::Open => {
+            Err(format!("{name}: this module has convex bodies alone").into())
+        }
+        #[cfg(feature = "min-gap")]
         BodyKind::Solid | BodyKind::Open => {
             let loaded = body::solid(mesh, &options).map_err(|error| refusal(name, &error))?;
             let Loaded { body, precision, notes } = loaded;
@@ -156,7 +176,12 @@ fn convex_part(body: ConvexPolyhedron, notes: &[Note]) -> (Part, Answer) {
             body_answer(&facts, body.vertices(), surface.vertices(), &drawn)
         }
     };
-    (Part::Convex(Hull { body, solid: OnceLock::new() }), answer)
+    let hull = Hull {
+        body,
+        #[cfg(feature = "min-gap")]
+        solid: OnceLock::new(),
+    };
+    (Part::Convex(hull), answer)
 }
 
 /// Returns the name of a way to use a mesh, as in questions.
@@ -196,6 +221,7 @@ fn convex_facts(body: &ConvexPolyhedron, notes: &[Note]) -> Facts {
     }
 }
 
+#[cfg(feature = "min-gap")]
 fn solid_facts(body: &Solid, notes: &[Note]) -> Facts {
     let faces = body.facet_indices().iter().max().map_or(0, |last| last.index() + 1);
     Facts {
@@ -239,6 +265,7 @@ fn hull_drawing(body: &ConvexPolyhedron, first: u32) -> Drawn {
 }
 
 /// Returns the triangles, the edges between faces at an angle, and open edges.
+#[cfg(feature = "min-gap")]
 fn solid_drawing(body: &Solid) -> Drawn {
     let vertices = body.vertices();
     let normal = |t: &[u32; 3]| {

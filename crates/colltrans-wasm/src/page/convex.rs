@@ -39,7 +39,7 @@ pub(crate) fn cast_answer(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Ref
     };
     Ok(Answer::from_facts(&CastAnswer {
         kind: "convex",
-        record: CastRecord::of_range(&range, &cast).into(),
+        record: CastRecord::of_range(&range, &cast),
         clearance: Some(ClearanceRecord::from_clearance(&clearance, &cast)),
         lit: first.ok().map(|contact| {
             let Features { moving, fixed } = contact.features(&cast);
@@ -61,6 +61,7 @@ pub(crate) fn verify(bodies: [&Hull; 2], pair: &Pair, proof: &Proof) -> Result<A
     let checked = match proof {
         Proof::Contact(certificate) => cast.verify(certificate),
         Proof::Separation(separation) => cast.verify(separation),
+        #[cfg(feature = "min-gap")]
         Proof::Clearance(_) => return Err("the proof is about solids".to_owned().into()),
     };
     Ok(check_answer(checked))

@@ -19,6 +19,7 @@ pub(crate) enum Question {
     /// Computes the contacts, and the clearance of the moving body.
     Cast(Pair),
     /// Builds a proof of the clearance between solids.
+    #[cfg(feature = "min-gap")]
     Certify(Pair),
     /// Checks a proof of an earlier answer.
     Verify(Pair, Proof),
@@ -52,8 +53,10 @@ pub(crate) struct Pair {
     /// For the solver `cta`: `start` is `center`, `ellipsoids` or `guess`, `until` is `exit` or a gap.
     pub(crate) narrowing: cta::Options,
     /// Tolerance of solids; the default follows from the precision of the files.
+    #[cfg_attr(not(feature = "min-gap"), expect(dead_code, reason = "there are no solids"))]
     pub(crate) tolerance: Option<f64>,
     /// Whether facets of solids that cross at the start are ignored.
+    #[cfg_attr(not(feature = "min-gap"), expect(dead_code, reason = "there are no solids"))]
     pub(crate) ignore_overlaps: bool,
 }
 
@@ -65,6 +68,7 @@ impl Question {
         match fields.text("do")? {
             "load" => fields.load().map(Self::Load),
             "cast" => fields.pair().map(Self::Cast),
+            #[cfg(feature = "min-gap")]
             "certify" => fields.pair().map(Self::Certify),
             "verify" => {
                 let proof = Proof::deserialize(fields.required("proof")?);

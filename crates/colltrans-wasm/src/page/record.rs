@@ -1,6 +1,7 @@
 //! The answer of a cast as the page reads it: the record of the library, and data for the page alone.
 
-use colltrans::record::{ClearanceRecord, Record};
+use colltrans::record::ClearanceRecord;
+#[cfg(feature = "min-gap")]
 use colltrans::solid::SolidCertificate;
 use colltrans::{Certificate, Separation};
 use serde::{Deserialize, Serialize};
@@ -9,11 +10,11 @@ use crate::highlight::ContactHighlight;
 
 /// An answer to `cast`. Fields that do not apply are omitted.
 #[derive(Serialize)]
-pub(crate) struct CastAnswer {
+pub(crate) struct CastAnswer<R> {
     /// The kind of the bodies: `convex` or `solid`.
     pub(crate) kind: &'static str,
     /// The contacts of convex bodies, or the clearance of solids.
-    pub(crate) record: Record,
+    pub(crate) record: R,
     /// The clearance of convex bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) clearance: Option<ClearanceRecord>,
@@ -35,5 +36,6 @@ pub(crate) enum Proof {
     Contact(Certificate),
     Separation(Separation),
     /// A proof between solids.
+    #[cfg(feature = "min-gap")]
     Clearance(SolidCertificate),
 }

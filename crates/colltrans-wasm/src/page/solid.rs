@@ -31,7 +31,7 @@ pub(crate) fn cast_answer([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<An
     }
     Ok(Answer::from_facts(&CastAnswer {
         kind: "solid",
-        record: SolidClearanceRecord::from_clearance(&clearance, cast.exit(), &cast).into(),
+        record: SolidClearanceRecord::from_clearance(&clearance, cast.exit(), &cast),
         clearance: None,
         lit,
         proof,

@@ -4,11 +4,13 @@ use colltrans_mesh::Mesh;
 use colltrans_mesh::body::BodyKind;
 
 use super::body::{self, Part};
+use super::convex;
 use super::question::{Load, Question, Slot};
-use super::{certify, convex, solid};
+#[cfg(feature = "min-gap")]
+use super::{certify, solid};
 use crate::Answers;
 use crate::answer::{Answer, Refusal};
-use crate::placing::body_of_name;
+use crate::shape::body_of_name;
 
 /// Number of bytes of a file above which its body is dropped before the next file is read, because both may
 /// not fit.
@@ -108,14 +110,17 @@ impl State {
                     [Part::Convex(moving), Part::Convex(fixed)] => {
                         convex::cast_answer([moving, fixed], &pair)
                     }
+                    #[cfg(feature = "min-gap")]
                     _ => solid::cast_answer(bodies, &pair),
                 }
             }
+            #[cfg(feature = "min-gap")]
             Question::Certify(pair) => certify::certify_clearance(self.bodies()?, &pair),
             Question::Verify(pair, proof) => match self.bodies()? {
                 [Part::Convex(moving), Part::Convex(fixed)] => {
                     convex::verify([moving, fixed], &pair, &proof)
                 }
+                #[cfg(feature = "min-gap")]
                 bodies => certify::verify(bodies, &pair, &proof),
             },
         }

@@ -1,4 +1,4 @@
-//! The module `page` with rounded bodies, as the page loads it for them.
+//! The module `page` with solids and rounded bodies, as the page loads it for them.
 //!
 //! It is linked by itself, not together with a Rust library, so that all of it is optimised at once.
 

@@ -1,5 +1,4 @@
-//! Two bodies, built from files or names as [`colltrans_mesh::body`] builds them for the module `page`. The modules
-//! `distance` and `motion` share this code.
+//! Two bodies, built from files or names as [`colltrans_mesh::body`] builds them for the module `page`.
 
 use std::path::Path;
 
@@ -11,19 +10,13 @@ use serde::Deserialize;
 use serde_json::json;
 
 use crate::answer::Answer;
+use crate::shape::body_of_name;
 
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Slot {
     Moving,
     Fixed,
-}
-
-/// Builds the body that a name describes, such as `sphere:0.5`. Returns `None` if bytes are attached or the name
-/// begins with no known shape, so that it names a file.
-pub(crate) fn body_of_name(name: &str, file: &[u8]) -> Option<Result<ConvexPolyhedron, String>> {
-    let built = if file.is_empty() { body::body_of_name(name, 1.0)? } else { return None };
-    Some(built.map_err(|error| error.to_string()))
 }
 
 /// Two bodies, built from files or names.

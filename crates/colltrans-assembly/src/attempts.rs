@@ -6,6 +6,8 @@ use crate::findings::Analysis;
 use crate::plan::{Interlocked, PathSearch, PlanOptions};
 use crate::roles::Role;
 
+/// A tolerance below this share of the size of the assembly hardly lets parts with an exact fit slide.
+const SLIDING_SHARE: f64 = 1e-6;
 /// Factor of the effort that is suggested after a search that did not end by itself.
 const MORE_EFFORT: u32 = 10;
 
@@ -50,6 +52,16 @@ pub fn next_attempts(found: &Analysis) -> Vec<Attempt> {
         let reason = "with it no shallow overlap is left, and overlapping parts move as one";
         add(format!("--tolerance {}", short_number(tolerance)), reason.into());
     }
+    let tolerance = found.bodies.fit().tolerance();
+    let sliding = sliding_tolerance(found);
+    let searched = |stuck: &Interlocked| matches!(stuck.path_search, PathSearch::NotFound { .. });
+    if (0.0..sliding).contains(&tolerance)
+        && !stuck.iter().any(overlapping)
+        && stuck.iter().any(searched)
+    {
+        let reason = "parts that fit exactly can hardly slide in several moves with a smaller one";
+        add(format!("--tolerance {}", short_number(sliding)), reason.into());
+    }
     let efforts = stuck.iter().filter_map(|stuck| match &stuck.path_search {
         PathSearch::NotFound { effort, searched } if !searched.complete => Some(*effort),
         _ => None,
@@ -64,4 +76,11 @@ pub fn next_attempts(found: &Analysis) -> Vec<Attempt> {
         add(format!("--effort {effort}"), "several moves were not searched".into());
     }
     all
+}
+
+/// Returns the power of ten at or below [`SLIDING_SHARE`] of the size of the assembly.
+fn sliding_tolerance(found: &Analysis) -> f64 {
+    let count = found.bodies.len();
+    let all = (1..count).fold(found.bodies.bounds(0), |all, k| all.union(&found.bodies.bounds(k)));
+    10_f64.powf((SLIDING_SHARE * all.side_lengths().length()).log10().floor())
 }

@@ -32,6 +32,9 @@ const MAX_AXES: usize = 13;
 const MAX_TRIES: usize = 3;
 /// Maximum number of legs of a path. The work ends a search before.
 const MAX_LEGS: usize = 64;
+/// Minimum lengths of a move, as fractions of the size of the largest body. After a search has explored all places that
+/// moves of one length reach, the next shorter length is tried.
+const STEP_SHARES: [f64; 4] = [0.02, 0.005, 0.0025, 0.001];
 /// Two axes are equal if their cross product is shorter than this.
 const PARALLEL: f64 = 1e-6;
 
@@ -103,21 +106,25 @@ pub(super) fn search_path(
     if let Some(why) = unsupported_reason(bodies, left, options) {
         return Ok(Err(PathSearch::NotSearched(why)));
     }
-    if !can_any_group_move(bodies, left, matrix) {
-        let why = "no group can travel 2 % of its size along the tested directions";
+    let can_move = |share: &f64| can_any_group_move(bodies, left, matrix, *share);
+    let Some(first) = STEP_SHARES.iter().position(can_move) else {
+        let why = "no group can travel 0.1 % of its size along the tested directions";
         return Ok(Err(PathSearch::NotSearched(why)));
-    }
+    };
     let parts = bodies.assembly().parts();
     let placed: Vec<_> = left.iter().map(|&k| parts[k].solid().at(Pose::IDENTITY)).collect();
     let cells = if options.prove { RemovalOptions::default().cells } else { 0 };
-    let limits = RemovalOptions::default()
+    let mut limits = RemovalOptions::default()
         .with_cells(cells)
         .with_legs(MAX_LEGS)
         .with_places(usize::MAX)
         .with_casts(usize::MAX)
         .with_looks(u64::MAX)
         .with_work(options.work())
+        .with_step(STEP_SHARES[first])
         .with_directions(search_directions(&placed, matrix));
+    let mut shorter = STEP_SHARES[first + 1..].iter();
+    let mut searched_before = SearchWork::default();
     let index = |part: &usize| left.iter().position(|k| k == part);
     let relation = |i: usize, j: usize| bodies.path_relation([left[i], left[j]], options.start);
     let mut scene = RemovalScene::new(placed, relation);
@@ -126,7 +133,8 @@ pub(super) fn search_path(
     }
     let mut fixed: Vec<usize> = among.stationary.iter().filter_map(index).collect();
     let constraints = bodies.assembly().constraints();
-    for tries in 0.. {
+    let mut violations = 0;
+    loop {
         scene = scene.with_fixed(&fixed);
         let way = match scene.search(&limits, watch.cancel_flag()) {
             Ok(RemovalSearch::Found(way)) => way,
@@ -136,7 +144,17 @@ pub(super) fn search_path(
                 return Ok(Err(PathSearch::Proven { cells: proof.cell_count() }));
             }
             Ok(RemovalSearch::NotFound { searched }) => {
-                return Ok(Err(PathSearch::NotFound { effort: options.effort, searched }));
+                searched_before = searched_before.followed_by(searched);
+                let work = options.work().saturating_sub(searched_before.total());
+                match shorter.next() {
+                    Some(&step) if searched.complete && work > 0 => {
+                        limits = limits.with_step(step).with_work(work).with_cells(0);
+                        continue;
+                    }
+                    _ => {}
+                }
+                let (effort, searched) = (options.effort, searched_before);
+                return Ok(Err(PathSearch::NotFound { effort, searched }));
             }
             Err(FreeError::Overlapping { .. }) => {
                 let why = "they overlap with 0.8 of the tolerance, which the search uses";
@@ -153,7 +171,8 @@ pub(super) fn search_path(
         fixed.extend(violating.iter().filter_map(index));
         fixed.sort_unstable();
         fixed.dedup();
-        if tries == MAX_TRIES || fixed.len() >= left.len() {
+        violations += 1;
+        if violations > MAX_TRIES || fixed.len() >= left.len() {
             break;
         }
     }
@@ -225,11 +244,10 @@ fn search_directions(placed: &[Placed<'_, Solid>], matrix: &ContactMatrix) -> Ve
     axes
 }
 
-/// Checks whether some group can travel one search step along a direction of the matrix. If not, no cast is needed.
-fn can_any_group_move(bodies: &Bodies, left: &[usize], matrix: &ContactMatrix) -> bool {
+/// Checks whether some group can travel a share of its size along a direction of the matrix. If not, no cast is needed.
+fn can_any_group_move(bodies: &Bodies, left: &[usize], matrix: &ContactMatrix, share: f64) -> bool {
     let among = bodies.part_mask(left);
     let size = |k: usize| bodies.bounds(k).side_lengths().max_element();
-    let share = RemovalOptions::default().step;
     let fixed = |k: &usize| bodies.assembly().parts()[*k].is_fixed();
     (0..matrix.directions().len()).any(|k| {
         let is_close = |m: &&PairContact| m.displaced_distance() < share * size(m.moving);

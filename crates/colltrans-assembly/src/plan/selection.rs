@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::smallest_set::{SufficientSet, smallest_sufficient_set};
-use super::{Plan, PlanOptions, Planner};
+use super::{Interlocked, Plan, PlanOptions, Planner};
 use crate::bodies::Bodies;
 use crate::candidates::FinerCandidate;
 use crate::error::AssemblyError;
@@ -31,8 +31,9 @@ pub struct SelectedRemoval {
 ///
 /// Removes the fewest other parts that suffice in single moves along the directions of the matrix. If that is any part,
 /// searches for several moves that remove the selected parts alone, at first of these parts only, then with others that
-/// move aside and return, and then for each other part in turn whether it may stay. If no set suffices, computes a plan
-/// of all parts and keeps the steps that the selected parts need.
+/// move aside and return, and then for each other part in turn whether it may stay. If no set suffices, or the selected
+/// parts leave only inside others that hold them, computes a plan of all parts and keeps the steps that the selected
+/// parts need.
 ///
 /// # Errors
 /// Returns the errors of [`disassemble`](super::disassemble), and an error if no parts or all parts are selected or a
@@ -65,10 +66,7 @@ pub fn remove<'a>(
         planner.plan_all(matrix)?;
         Ok::<Plan, AssemblyError>(planner.plan)
     };
-    let is_whole = |plan: &Plan| {
-        let is_there = |part: &usize| !plan.remaining.contains(part) && !plan.base.contains(part);
-        parts.iter().all(is_there)
-    };
+    let is_whole = |plan: &Plan| plan.takes_out(&parts);
     // A set of single moves with others may be larger than necessary: several moves may take out fewer parts.
     let mut fewest = found.as_ref().map(|set| set.parts.clone());
     let mut planned = None;
@@ -98,10 +96,14 @@ pub fn remove<'a>(
             }
         }
     }
-    let planned = match planned {
+    let mut planned = match planned {
         Some(plan) => plan,
         None => plan_with(fewest.as_deref(), false)?,
     };
+    if fewest.is_some() && !is_whole(&planned) {
+        // The selected parts leave with others, and then stay locked in them.
+        (planned, fewest) = (plan_with(None, false)?, None);
+    }
     let is_reduced = fewest.as_ref().map(Vec::len) != found.as_ref().map(|set| set.parts.len());
     let mut plan = planned;
     if fewest.is_none() {
@@ -116,16 +118,26 @@ pub fn remove<'a>(
     others.sort_unstable();
     let single = !is_reduced && found.is_some_and(|SufficientSet { least, .. }| least);
     let least = others.is_empty() || single;
-    let out = gone.len() == parts.len();
+    let out = gone.len() == parts.len() && plan.takes_out(&parts);
     plan.selection = Some(SelectedRemoval { parts, others, is_minimal: least, is_complete: out });
     Ok(Plan { first_identical: likes.clone(), ..plan })
 }
 
 impl Plan {
+    /// Checks whether parts leave, and do not stay interlocked with other parts.
+    fn takes_out(&self, wanted: &[usize]) -> bool {
+        let stays = |part: &usize| self.remaining.contains(part) || self.base.contains(part);
+        let is_locked = |group: &Interlocked| {
+            let (inside, others) =
+                group.parts.iter().partition::<Vec<usize>, _>(|part| wanted.contains(part));
+            !inside.is_empty() && !others.is_empty()
+        };
+        !wanted.iter().any(stays) && !self.interlocked.iter().any(is_locked)
+    }
+
     /// Drops the steps that the selected parts do not need. Does nothing if a selected part does not come out.
     fn drop_unneeded_steps(&mut self, wanted: &[usize], count: usize) {
-        let is_there = |part: &usize| self.remaining.contains(part) || self.base.contains(part);
-        if wanted.iter().any(is_there) {
+        if !self.takes_out(wanted) {
             return;
         }
         let takes = |step: &super::Step| step.parts.iter().any(|part| wanted.contains(part));

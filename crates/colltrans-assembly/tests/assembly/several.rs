@@ -388,3 +388,65 @@ fn selected_part_leaves_alone_if_others_move_aside() {
     assert_eq!((plan.steps.len(), &plan.steps[0].parts), (1, &cube));
     assert_eq!(plan.steps[0].return_legs.len(), 1);
 }
+
+#[test]
+fn long_rod_leaves_after_a_short_move() {
+    // The rod is 60 long. It must drop by about 1, until its knob is below the ceiling, and then slides out.
+    let base = blocks(
+        "base",
+        &[
+            [[-1.0, -1.0, -2.0], [60.0, 2.0, -1.0]],
+            [[-1.0, -1.0, -1.0], [60.0, 0.0, 2.0]],
+            [[-1.0, 1.0, -1.0], [60.0, 2.0, 2.0]],
+            [[-1.0, 0.0, -1.0], [0.0, 1.0, 2.0]],
+            [[0.0, 0.0, 1.0], [2.0, 1.0, 2.0]],
+            [[3.0, 0.0, 1.0], [60.0, 1.0, 2.0]],
+            [[-1.0, -1.0, 2.0], [60.0, 2.0, 3.0]],
+        ],
+    );
+    let rod = blocks(
+        "rod",
+        &[[[0.02, 0.02, 0.02], [60.0, 0.98, 0.98]], [[2.02, 0.02, 0.5], [2.98, 0.98, 1.98]]],
+    );
+    let plan = planned(&Assembly::new(vec![base, rod]).unwrap(), PlanOptions::default());
+    assert!(plan.interlocked.is_empty() && plan.remaining.is_empty(), "{plan:?}");
+    assert_eq!((plan.steps.len(), plan.steps[0].path.len()), (1, 2));
+    assert_eq!(plan.steps[0].path[0].direction, DVec3::NEG_Z);
+}
+
+#[test]
+fn selected_part_that_stays_locked_in_another_one_is_not_out() {
+    // The bolt leaves by two moves after the plug, but without clearance no search of several moves finds them. The
+    // base and the bolt together leave all others by one move.
+    let base = blocks(
+        "base",
+        &[
+            [[0.0, 0.0, 0.0], [7.0, 3.0, 1.0]],
+            [[0.0, 0.0, 1.0], [7.0, 1.0, 5.0]],
+            [[0.0, 2.0, 1.0], [7.0, 3.0, 5.0]],
+            [[0.0, 1.0, 1.0], [1.0, 2.0, 5.0]],
+            [[6.0, 1.0, 1.0], [7.0, 2.0, 5.0]],
+            [[1.0, 1.0, 3.0], [5.0, 2.0, 5.0]],
+        ],
+    );
+    let bolt = blocks("bolt", &[[[1.0, 1.0, 1.0], [2.0, 2.0, 3.0]]]);
+    let plug = blocks("plug", &[[[5.0, 1.0, 3.0], [6.0, 2.0, 5.0]]]);
+    let beside = |k: u8| {
+        let x = 9.0 + 2.0 * f64::from(k);
+        blocks(&format!("beside_{k}"), &[[[x, 0.0, 0.0], [x + 1.0, 2.0, 1.0]]])
+    };
+    let mut parts = vec![base, bolt, plug];
+    parts.extend((0..4).map(beside));
+    let assembly = Assembly::new(parts).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    for effort in [0, 1] {
+        let options = PlanOptions::default().with_effort(effort);
+        let question = AnalysisRequest::default().with_options(options).with_selected(vec![1]);
+        let plan = question.analyse(&bodies, Watch::default()).unwrap().plan;
+        let selection = plan.selection.as_ref().expect("a selection");
+        let holds = |parts: &[usize]| parts.contains(&1) && parts.len() > 1;
+        let locked = plan.interlocked.iter().any(|group| holds(&group.parts));
+        assert_eq!(selection.is_complete, !locked, "{plan:?}");
+        assert!(!selection.is_minimal || selection.is_complete);
+    }
+}

@@ -173,6 +173,21 @@ impl SearchWork {
     /// Number of node visits for which a cast counts in [`total`](Self::total).
     pub const CAST_WORK: u64 = 500;
 
+    /// Returns the work of two searches, of which the second one began when the first one had ended. The directions and
+    /// the completeness are those of the second one.
+    #[must_use]
+    pub const fn followed_by(self, second: Self) -> Self {
+        Self {
+            directions: second.directions,
+            places: self.places + second.places,
+            casts: self.casts + second.casts,
+            openings: self.openings + second.openings,
+            looks: self.looks + second.looks,
+            free_sets: self.free_sets + second.free_sets,
+            complete: second.complete,
+        }
+    }
+
     /// Returns the total work: node visits, and 500 for each cast.
     pub const fn total(&self) -> u64 {
         self.looks + Self::CAST_WORK * self.casts as u64

@@ -95,6 +95,26 @@ impl Constraints {
         self.check_acyclic(name)
     }
 
+    /// Returns the constraints with preferred order pairs: the first part of each leaves before or together with the
+    /// second. Pairs that contradict these constraints, or pairs before them, are left out.
+    pub(crate) fn with_preferred(&self, pairs: &[[usize; 2]]) -> Self {
+        let mut all = self.clone();
+        all.before.extend(pairs.iter().filter(|[a, b]| a != b));
+        all.before.sort_unstable();
+        all.before.dedup();
+        if all.check_acyclic(|_| "").is_ok() {
+            return all;
+        }
+        let mut kept = self.clone();
+        for &[a, b] in pairs {
+            let mut next = kept.clone();
+            if a != b && next.add_before([&[a], &[b]], |_| "").is_ok() {
+                kept = next;
+            }
+        }
+        kept
+    }
+
     /// Adds a unit of parts that leave as one. `name` returns the name of a part.
     ///
     /// # Errors

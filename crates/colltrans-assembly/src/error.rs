@@ -74,6 +74,14 @@ pub enum AssemblyError {
         /// Name of the part.
         name: String,
     },
+    /// A pair is given two different roles.
+    #[error("the pair {},{} has contradicting roles {} and {}; give one of them", names[0], names[1], roles[0], roles[1])]
+    ContradictingRoles {
+        /// Names of the parts.
+        names: [String; 2],
+        /// Names of the roles.
+        roles: [&'static str; 2],
+    },
     /// A pair has neither a role nor a tolerance.
     #[error("the entry for pair {},{} has neither a role nor a tolerance; give one of them", names[0], names[1])]
     NoFit {

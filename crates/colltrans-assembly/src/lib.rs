@@ -3,6 +3,7 @@
 //!
 //! Stages of a run, performed by one [`AnalysisRequest`]:
 //! - [`Assembly`] and [`Fit`] -> [`Bodies`] (queries; [`roles`], [`threads`]) -> [`start`], [`suggest`] (overlaps)
+//! - [`fasteners`]: screws, nuts and other standard parts, which a plan treats as a mechanic does
 //! - [`hints`], [`liaisons`] (contacts), [`candidates`] (directions, also of [`cylinders`] and [`inertia`])
 //! - [`matrix`], [`travel`] (blockers and free travel) -> [`blocking`] (graph, [`constraints`]) -> [`plan`] ([`identical`]),
 //!   [`map`]
@@ -33,6 +34,7 @@ pub mod candidates;
 pub mod colour;
 pub mod constraints;
 pub mod cylinders;
+pub mod fasteners;
 pub mod free;
 pub mod hints;
 pub mod identical;

@@ -277,10 +277,11 @@ impl Assembly {
     }
 
     /// Returns the assembly with a role, a tolerance or both for each pair of a part of the first group and
-    /// one of the second. A later entry for a pair replaces an earlier one. Names are patterns of
-    /// [`parts_named`](Self::parts_named).
+    /// one of the second. A later entry for a pair replaces an earlier one, unless it has another role. Names are
+    /// patterns of [`parts_named`](Self::parts_named).
     ///
     /// # Errors
+    /// - [`AssemblyError::ContradictingRoles`] if a pair has another role already
     /// - [`AssemblyError::UnknownPart`]
     /// - [`AssemblyError::SamePart`] if both groups consist of the same single part
     /// - [`AssemblyError::InvalidValue`] if the tolerance is negative, not finite or too large
@@ -305,6 +306,14 @@ impl Assembly {
             return Err(AssemblyError::NoTolerance { names: names() });
         }
         for pair in pairs_between(&groups) {
+            let known = self.pairs.get(&pair).and_then(|known| known.role);
+            if let (Some(a), Some(b)) = (known, fit.role)
+                && a != b
+            {
+                let names = pair.map(|part| self.parts[part].name.clone());
+                let roles = [a, b].map(Role::name);
+                return Err(AssemblyError::ContradictingRoles { names, roles });
+            }
             self.pairs.insert(pair, fit);
             if fit.role == Some(Role::Glued) {
                 let unit = RigidUnit { name: None, parts: pair.to_vec(), is_subassembly: false };

@@ -14,6 +14,7 @@
 
 mod bayonet;
 mod interlock;
+mod known_parts;
 mod lazy_search;
 mod multi_move;
 mod options;
@@ -46,8 +47,8 @@ use crate::blocking::BlockingGraph;
 use crate::bodies::Bodies;
 use crate::candidates::FinerCandidate;
 use crate::error::AssemblyError;
+use crate::fasteners::Fasteners;
 use crate::free::RemovalPair;
-use crate::identical::first_identical_parts;
 use crate::map::{MapOptions, find_removal_direction};
 use crate::matrix::{ContactMatrix, direction_bits};
 use crate::part::Part;
@@ -57,6 +58,7 @@ use crate::witness::Memory;
 
 use bayonet::Bayonet;
 pub use interlock::BlockingSets;
+use known_parts::KnownParts;
 pub use multi_move::PathSearch;
 use multi_move::{MovePath, PathParts};
 pub use options::PlanOptions;
@@ -110,8 +112,10 @@ pub struct Plan {
     /// Interlocked groups, with the reasons.
     pub interlocked: Vec<Interlocked>,
     /// For each part, the index of the first part with the same shape, see
-    /// [`first_identical_parts`].
+    /// [`first_identical_parts`](crate::identical::first_identical_parts).
     pub first_identical: Vec<usize>,
+    /// The fasteners of the assembly. They affect the order and the texts, never which moves are free.
+    pub fasteners: Fasteners,
     /// For a plan that removes selected parts: which other parts are removed with them. `None` for a plan of all
     /// parts.
     pub selection: Option<SelectedRemoval>,
@@ -136,10 +140,11 @@ pub fn disassemble<'a>(
     options: PlanOptions,
     watch: Watch,
 ) -> Result<Plan, AssemblyError> {
-    let likes = first_identical_parts(bodies.assembly());
-    let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
+    let known = KnownParts::new(bodies)?;
+    let mut planner = Planner::new(bodies, finer, &known, options, watch)?;
     planner.plan_all(matrix)?;
-    Ok(Plan { first_identical: likes.clone(), ..planner.plan })
+    let plan = planner.plan;
+    Ok(known.complete(plan))
 }
 
 /// Maximum number of finer directions that are tested for an interlocked group.
@@ -154,7 +159,7 @@ struct Planner<'a> {
     finer: &'a [FinerCandidate],
     options: PlanOptions,
     up: DVec3,
-    likes: &'a [usize],
+    known: &'a KnownParts,
     watch: Watch<'a>,
     tally: StageProgress<'a>,
     plan: Plan,
@@ -244,7 +249,7 @@ impl<'a> Planner<'a> {
     fn new(
         bodies: &'a Bodies<'a>,
         finer: &'a [FinerCandidate],
-        likes: &'a [usize],
+        known: &'a KnownParts,
         options: PlanOptions,
         watch: Watch<'a>,
     ) -> Result<Self, AssemblyError> {
@@ -258,7 +263,7 @@ impl<'a> Planner<'a> {
             finer,
             options,
             up,
-            likes,
+            known,
             watch,
             tally,
             plan,
@@ -304,10 +309,11 @@ impl<'a> Planner<'a> {
         let alive = self.bodies.part_mask(group);
         let mut left = group.to_vec();
         let movable = self.movable.filter(|_| within.is_none());
-        let (bodies, likes, wanted) = (self.bodies, self.likes, self.wanted);
+        let (bodies, known, wanted) = (self.bodies, self.known, self.wanted);
         let PlanOptions { samples, start, .. } = self.options;
-        let mut order = Order::new(bodies, matrix, likes, &alive, self.up, movable, wanted)
-            .with_shortcuts(samples, start);
+        let mut order = Order::new(bodies, matrix, &known.likes, &alive, self.up, movable, wanted)
+            .with_shortcuts(samples, start)
+            .with_preferred(&known.preferred);
         let constraints = self.bodies.assembly().constraints();
         let watch = self.watch;
         let single_parts = |order: &Order| {
@@ -333,6 +339,10 @@ impl<'a> Planner<'a> {
             let mut tested: HashSet<[u64; 3]> =
                 matrix.directions().iter().copied().map(direction_bits).collect();
             let (mut choice, mut whole) = (order.best_single_part(&mut single), None);
+            if choice.is_none() && order.relax() {
+                // The order of the fasteners permits no part alone: this step ignores it.
+                choice = order.best_single_part(&mut single_parts(&order)?);
+            }
             if choice.is_none() {
                 let whole = &*whole.insert(self.complete_matrix_among(matrix, &left)?);
                 choice = smallest_removable_group(&mut order, whole, &left);
@@ -380,6 +390,7 @@ impl<'a> Planner<'a> {
             } else {
                 removal.parts.iter().for_each(|&part| single.remove(part));
             }
+            order.restore();
             self.take_out(removal, (&order, &left), unsettled, matrix, &mut removed)?;
         }
         Ok(left)
@@ -434,11 +445,13 @@ impl<'a> Planner<'a> {
             }
             None => path.push(Leg::straight(parts.clone(), direction, travel.value)),
         }
+        let unscrewing = self.known.plain_unscrewing(&path, &parts, present);
         self.plan.steps.push(Step {
             parts: parts.clone(),
             direction,
             travel,
             path,
+            unscrewing,
             return_legs: back,
             group_step: removed.within,
             predecessors: after,
@@ -503,7 +516,7 @@ impl<'a> Planner<'a> {
         RemovedParts { within, step_of_part }: &RemovedParts,
     ) -> Vec<usize> {
         let mut after: Vec<usize> = within.iter().copied().collect();
-        let constraints = self.bodies.assembly().constraints();
+        let constraints = &self.known.preferred;
         if constraints.is_any_order() {
             let waits =
                 step_of_part.iter().filter(|(part, _)| constraints.must_wait_for(group, **part));
@@ -809,6 +822,7 @@ mod tests {
 
     use super::*;
     use crate::bodies::Fit;
+    use crate::identical::first_identical_parts;
     use crate::part::{Assembly, Piece};
 
     fn cube_part(name: usize, at: DVec3) -> Part {

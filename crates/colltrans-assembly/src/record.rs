@@ -8,6 +8,7 @@ use glam::DVec3;
 use serde_json::{Value, json};
 
 use crate::bodies::{Bodies, Fit};
+use crate::fasteners::{Fastener, Unscrewing};
 use crate::hints::Hint;
 use crate::liaisons::Liaison;
 use crate::map::{Region, RemovalMap};
@@ -203,6 +204,9 @@ fn step_json(assembly: &Assembly, step: &Step) -> Value {
     if !step.return_legs.is_empty() {
         object["back"] = path_json(assembly, &step.return_legs);
     }
+    if let Some(turns) = &step.unscrewing {
+        object["unscrew"] = unscrewing_json(turns);
+    }
     if !step.ignored.is_empty() {
         let pairs: Vec<_> = step.ignored.iter().map(|pair| assembly.part_names(pair)).collect();
         object["ignored"] = json!(pairs);
@@ -222,6 +226,46 @@ fn step_json(assembly: &Assembly, step: &Step) -> Value {
     }
     if !step.surfaces.is_empty() {
         object["surfaces"] = json!(assembly.part_names(&step.surfaces));
+    }
+    object
+}
+
+/// Returns the turns of a plain thread.
+fn unscrewing_json(turns: &Unscrewing) -> Value {
+    json!({
+        "length": turns.length,
+        "turns": turns.turns(),
+        "pitch": turns.pitch,
+        "standard": turns.standard.map(|size| format!("M{size}")),
+        "words": turns.words(),
+    })
+}
+
+/// Returns a fastener: kind, designation, sizes, axis, head, drive and thread.
+pub fn fastener_json(fastener: &Fastener) -> Value {
+    let mut object = json!({
+        "kind": fastener.kind.name(),
+        "size": fastener.designation,
+        "diameter": fastener.diameter,
+        "length": fastener.length,
+        "width": fastener.width,
+        "axis": fastener.axis.map(|v| v.to_array()),
+        "words": fastener.details(),
+    });
+    if let Some(size) = fastener.metric {
+        object["metric"] = json!(format!("M{size}"));
+    }
+    if let Some(head) = fastener.head {
+        object["head"] = json!({ "form": head.name(), "height": fastener.head_height });
+    }
+    if let Some((drive, width)) = fastener.drive {
+        object["drive"] = json!({ "form": drive.name(), "width": width });
+    }
+    if let Some(pitch) = fastener.pitch {
+        object["pitch"] = json!(pitch);
+    }
+    if fastener.needs_name {
+        object["by_name"] = json!(true);
     }
     object
 }

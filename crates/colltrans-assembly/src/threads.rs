@@ -343,7 +343,7 @@ fn lateral_vector(axis: DVec3, seen: DVec2) -> DVec3 {
 }
 
 /// Returns the distance of a point from a triangle in the plane; 0 inside the triangle.
-fn triangle_distance(point: DVec2, corners: [DVec2; 3]) -> f64 {
+pub(crate) fn triangle_distance(point: DVec2, corners: [DVec2; 3]) -> f64 {
     let mut least = f64::INFINITY;
     let mut sides = [0.0; 3];
     for k in 0..3 {

@@ -330,6 +330,7 @@ impl From<AssemblyError> for Failure {
             | AssemblyError::TooFew { .. }
             | AssemblyError::NoTolerance { .. }
             | AssemblyError::NoFit { .. }
+            | AssemblyError::ContradictingRoles { .. }
             | AssemblyError::FixedAndRemoved { .. }
             | AssemblyError::InvalidRemoval { .. }
             | AssemblyError::InvalidAngle { .. } => Code::Usage,

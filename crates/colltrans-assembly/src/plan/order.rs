@@ -66,6 +66,10 @@ pub(super) struct GroupChoice {
 /// The state by which steps are chosen, for some of the parts.
 pub(super) struct Order<'a> {
     bodies: &'a Bodies<'a>,
+    /// The constraints of the assembly with the preferred order of fasteners.
+    preferred: &'a Constraints,
+    /// Whether the preferred order is ignored.
+    is_relaxed: bool,
     up: DVec3,
     size: f64,
     /// For each part, the first part with the same shape.
@@ -131,6 +135,8 @@ impl<'a> Order<'a> {
         let (last, shortcuts, changed) = (None, Shortcuts::default(), Vec::new());
         Self {
             bodies,
+            preferred: bodies.assembly().constraints(),
+            is_relaxed: false,
             up,
             size,
             likes,
@@ -152,6 +158,24 @@ impl<'a> Order<'a> {
         Self { shortcuts, ..self }
     }
 
+    /// Adds a preferred order to the constraints of the assembly.
+    pub(super) fn with_preferred(self, preferred: &'a Constraints) -> Self {
+        Self { preferred, ..self }
+    }
+
+    /// Ignores the preferred order until it is [restored](Self::restore). Returns `false` if it demands nothing of the
+    /// present parts.
+    pub(super) fn relax(&mut self) -> bool {
+        let own = self.bodies.assembly().constraints().order_arcs(self.present()).len();
+        self.is_relaxed = self.preferred.order_arcs(self.present()).len() > own;
+        self.is_relaxed
+    }
+
+    /// Demands the preferred order again.
+    pub(super) fn restore(&mut self) {
+        self.is_relaxed = false;
+    }
+
     /// Returns the mask of present parts.
     pub(super) fn present(&self) -> &[bool] {
         self.living.remaining_flags()
@@ -163,7 +187,7 @@ impl<'a> Order<'a> {
     }
 
     fn constraints(&self) -> &'a Constraints {
-        self.bodies.assembly().constraints()
+        if self.is_relaxed { self.bodies.assembly().constraints() } else { self.preferred }
     }
 
     /// Returns the parts that move if a group is separated from the others, in increasing order.

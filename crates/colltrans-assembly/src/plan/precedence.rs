@@ -43,9 +43,10 @@ impl Plan {
     }
 
     /// Returns the steps as CSV, numbered from 1. The columns are the parts, direction, travel, turns, number of
-    /// moves, enclosing step, preceding steps, round, and seconds.
+    /// moves, enclosing step, preceding steps, round, and seconds. If there are fasteners, further columns have the
+    /// kind and the size of a single one, and the length, turns and pitch of its unscrewing.
     pub fn to_csv(&self, assembly: &Assembly, times: &HandlingTimes) -> String {
-        let heads = [
+        let mut heads = vec![
             "step",
             "parts",
             "direction_x",
@@ -59,6 +60,10 @@ impl Plan {
             "round",
             "seconds",
         ];
+        let has_fasteners = !self.fasteners.is_empty();
+        if has_fasteners {
+            heads.extend(FASTENER_COLUMNS);
+        }
         let mut table = Table::new(&heads);
         let seconds = times.step_seconds(self);
         let rounds = self.parallel_rounds();
@@ -70,7 +75,8 @@ impl Plan {
             let parts = assembly.part_names(&step.parts).join("; ");
             let (within, after) =
                 (step.group_step.map_or(Vec::new(), |w| vec![w]), &step.predecessors);
-            table.push_row(&[
+            let (within, after) = (numbers(&within), numbers(after));
+            let mut cells = vec![
                 Cell::Number((k + 1) as f64),
                 Cell::Text(&parts),
                 Cell::Number(step.direction.x),
@@ -79,15 +85,32 @@ impl Plan {
                 Cell::Number(step.travel.value),
                 Cell::Number(step.first_turn().map_or(0.0, |turn| turn.turns)),
                 Cell::Number(step.path.len() as f64),
-                Cell::Text(&numbers(&within)),
-                Cell::Text(&numbers(after)),
+                Cell::Text(&within),
+                Cell::Text(&after),
                 Cell::Number((round + 1) as f64),
                 Cell::Number(seconds[k]),
-            ]);
+            ];
+            if has_fasteners {
+                let fastener = match step.parts[..] {
+                    [part] => self.fasteners.get(part),
+                    _ => None,
+                };
+                cells.push(Cell::Text(fastener.map_or("", |f| f.kind.name())));
+                cells.push(Cell::Text(fastener.map_or("", |f| &f.designation)));
+                cells.extend(match step.unscrewing {
+                    Some(own) => [own.length, own.turns(), own.pitch].map(Cell::Number),
+                    None => [Cell::Text(""); 3],
+                });
+            }
+            table.push_row(&cells);
         }
         table.into_text()
     }
 }
+
+/// Names of the columns of fasteners.
+const FASTENER_COLUMNS: [&str; 5] =
+    ["fastener", "size", "unscrew_length", "unscrew_turns", "unscrew_pitch"];
 
 /// Returns the precedence of all parts as an AND/OR graph, along the directions of a matrix.
 ///

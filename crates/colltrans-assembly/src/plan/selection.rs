@@ -3,11 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::smallest_set::{SufficientSet, smallest_sufficient_set};
-use super::{Interlocked, Plan, PlanOptions, Planner};
+use super::{Interlocked, KnownParts, Plan, PlanOptions, Planner};
 use crate::bodies::Bodies;
 use crate::candidates::FinerCandidate;
 use crate::error::AssemblyError;
-use crate::identical::first_identical_parts;
 use crate::matrix::ContactMatrix;
 use crate::part::Assembly;
 use crate::watch::Watch;
@@ -57,11 +56,11 @@ pub fn remove<'a>(
         return Err(AssemblyError::FixedAndRemoved { name: all[fixed].name().to_owned() });
     }
     matrix.compute_all(watch)?;
-    let likes = first_identical_parts(bodies.assembly());
+    let known = KnownParts::new(bodies)?;
     let found = smallest_sufficient_set(bodies, matrix, &parts);
     let other_count = |set: &SufficientSet| set.parts.len() - parts.len();
     let plan_with = |movable: Option<&[usize]>, makes_room: bool| {
-        let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
+        let mut planner = Planner::new(bodies, finer, &known, options, watch)?;
         (planner.wanted, planner.movable, planner.makes_room) = (&parts, movable, makes_room);
         planner.plan_all(matrix)?;
         Ok::<Plan, AssemblyError>(planner.plan)
@@ -120,7 +119,7 @@ pub fn remove<'a>(
     let least = others.is_empty() || single;
     let out = gone.len() == parts.len() && plan.takes_out(&parts);
     plan.selection = Some(SelectedRemoval { parts, others, is_minimal: least, is_complete: out });
-    Ok(Plan { first_identical: likes.clone(), ..plan })
+    Ok(known.complete(plan))
 }
 
 impl Plan {

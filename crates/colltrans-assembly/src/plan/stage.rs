@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::{Leg, Plan, Step, ToleratedContact};
+use crate::fasteners::{FastenerKind, Unscrewing};
 use crate::identical::{common_name, group_identical_pairs};
 use crate::part::Assembly;
 
@@ -111,6 +112,49 @@ impl Plan {
             Some(name) if steps.len() > 1 => format!("{} x {name}", steps.len()),
             _ => names.join(", "),
         }
+    }
+
+    /// Returns the action of a stage that removes fasteners of one designation one by one: `unscrew 4 x M5 x 20
+    /// (bolt)`, `washer M5 (washer_1)`. Returns `None` for other stages.
+    pub fn describe_fasteners(&self, assembly: &Assembly, stage: &Range<usize>) -> Option<String> {
+        let steps = &self.steps[stage.clone()];
+        let fastener = |step: &Step| match step.parts[..] {
+            [part] => self.fasteners.get(part),
+            _ => None,
+        };
+        let first = fastener(&steps[0])?;
+        let title = first.title();
+        if !steps.iter().all(|step| fastener(step).is_some_and(|f| f.title() == title)) {
+            return None;
+        }
+        let parts: Vec<usize> = steps.iter().map(|step| step.parts[0]).collect();
+        let names = assembly.part_names(&parts);
+        let name = common_name(&names).filter(|_| names.len() > 1);
+        let name = name.unwrap_or_else(|| names.join(", "));
+        let count = if steps.len() > 1 { format!("{} x ", steps.len()) } else { String::new() };
+        let turns = |step: &Step| step.unscrewing.is_some() || step.first_turn().is_some();
+        let is_turned = steps.iter().all(turns);
+        // A screw needs no name of its kind beside the verb.
+        let size = match first.kind {
+            FastenerKind::Screw if is_turned => &first.designation,
+            _ => &title,
+        };
+        let verb = if is_turned { "unscrew " } else { "" };
+        Some(format!("{verb}{count}{size} ({name})"))
+    }
+
+    /// Returns descriptions of the turns of plain threads in a stage, each once.
+    pub fn describe_unscrewing(
+        &self,
+        stage: &Range<usize>,
+        describe: impl Fn(&Unscrewing) -> String,
+    ) -> Vec<String> {
+        let mut all: Vec<String> = Vec::new();
+        for step in &self.steps[stage.clone()] {
+            let text = step.unscrewing.as_ref().map(&describe);
+            all.extend(text.filter(|text| !all.contains(text)));
+        }
+        all
     }
 
     /// Returns the common direction of the steps of a stage, or `None` if their directions differ.

@@ -7,6 +7,7 @@ use colltrans::{Bounded, Pose};
 use glam::{DQuat, DVec3};
 
 use super::ToleratedContact;
+use crate::fasteners::Unscrewing;
 use crate::part::Assembly;
 
 /// Maximum number of ignored pairs that are named for a step.
@@ -130,6 +131,9 @@ pub struct Step {
     /// The moves that remove the group, in order, of the group or of parts that make room. In the last one the group
     /// leaves, along `direction` for `travel`. Mostly this is the only one.
     pub path: Vec<Leg>,
+    /// The turns of a screw or nut at the beginning of its first move, if its thread is not modelled or has no role.
+    /// The proof of the move does not contain the turns.
+    pub unscrewing: Option<Unscrewing>,
     /// The reversed moves of parts that made room, after the group has left, and of parts of the group that left with
     /// a relative displacement. After each step all remaining parts are in their initial poses.
     pub return_legs: Vec<Leg>,

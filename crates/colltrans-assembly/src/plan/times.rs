@@ -31,7 +31,7 @@ pub struct HandlingTimes {
     pub soft: f64,
     /// Each snap fit.
     pub snap: f64,
-    /// Each threaded pair.
+    /// Each threaded pair, and each screw or nut that is unscrewed from a plain hole.
     pub thread: f64,
 }
 
@@ -96,6 +96,7 @@ impl HandlingTimes {
                 + when(other, self.shape)
                 + when(step.parts.len() > 1, self.group)
                 + self.hold * held
+                + when(step.unscrewing.is_some(), self.thread)
                 + passed.sum::<f64>()
         };
         plan.steps.iter().map(step).collect()

@@ -18,6 +18,9 @@ pub fn findings_json(f: &Analysis) -> Value {
         if let Some(remark) = f.bodies.shrink_defects(k) {
             object["remark"] = json!(remark);
         }
+        if let Some(fastener) = f.plan.fasteners.get(k) {
+            object["fastener"] = record::fastener_json(fastener);
+        }
         object
     });
     let (fit, length) = match f.bodies.fit() {

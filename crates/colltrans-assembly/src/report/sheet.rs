@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use maud::{Markup, html};
 
 use super::scene::{Arrow, Look, Scene, Shown, Viewpoint};
-use super::words::{number_runs, time_text};
+use super::words::{number_runs, sentence, time_text};
 use super::{Report, picture_markup, present_parts};
 use crate::Fit;
 use crate::identical::group_identical_pairs;
@@ -38,7 +38,7 @@ pub(super) fn step_page(r: &Report, repeats: &[&Range<usize>]) -> Markup {
         repeats.iter().flat_map(|stage| r.f.plan.steps[(*stage).clone()].to_vec()).collect();
     html! {
         section.sheet.step id=(format!("step-{}", stage.start + 1)) {
-            h2 { (head) " " (number_runs(&all)) ": take out " (taken_parts_text(r, stage)) }
+            h2 { (head) " " (number_runs(&all)) ": " (action_text(r, stage)) }
             @if let Some(within) = steps[0].group_step {
                 p.soft { "On the bench, from what step " (within + 1) " took out: " (r.words.group_text(&r.f.plan.steps[within].parts)) "." }
             }
@@ -68,6 +68,13 @@ fn repeats_section(r: &Report, others: &[&Range<usize>]) -> Markup {
             }
         }
     }
+}
+
+/// Describes the action of a stage: `take out base`, `unscrew M5 x 20 (m5x20_1)`.
+fn action_text(r: &Report, stage: &Range<usize>) -> String {
+    let fasteners = r.f.plan.describe_fasteners(r.f.bodies.assembly(), stage);
+    let text = fasteners.unwrap_or_else(|| taken_parts_text(r, stage));
+    if text.starts_with("unscrew ") { text } else { format!("take out {text}") }
 }
 
 /// Describes the parts that a stage removes.
@@ -245,6 +252,9 @@ fn stage_facts(r: &Report, stage: &Range<usize>) -> Markup {
                 }
             } @else {
                 div { dt { "Moves" } dd { (step.path.len()) @if !step.return_legs.is_empty() { ", and " (step.return_legs.len()) " back" } } }
+            }
+            @for turns in r.f.plan.describe_unscrewing(stage, |turns| turns.describe(|x| r.words.length_text(x))) {
+                div { dt { "Thread" } dd { (sentence(&turns)) } }
             }
             div { dt { "Needs" } dd { @if after.is_empty() { "no earlier step" } @else { (step_list(&after)) } } }
             div { dt { "Round" } dd { (number_runs(&rounds)) " of " (r.rounds.iter().max().map_or(0, |k| k + 1)) } }

@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use super::{Analysis, direction_name, graph, picture_markup, short_number};
 use crate::blocking::BlockingGraph;
 use crate::bodies::Fit;
+use crate::fasteners::Fastener;
 use crate::part::Part;
 use crate::travel::PartTravel;
 
@@ -144,10 +145,20 @@ fn parts_table(f: &Analysis) -> Markup {
     };
     html! {
         div.wide { table {
-            tr { th { "part" } th { "facets" } th { "volume" } th { "remarks" } }
+            @let has_fasteners = !f.plan.fasteners.is_empty();
+            tr {
+                th { "part" }
+                @if has_fasteners { th { "fastener" } th { "form" } }
+                th { "facets" } th { "volume" } th { "remarks" }
+            }
             @for (k, p) in f.bodies.assembly().parts().iter().enumerate().take(MAX_ROWS) {
                 tr {
                     td { (p.name()) }
+                    @if has_fasteners {
+                        @let fastener = f.plan.fasteners.get(k);
+                        td { (fastener.map_or_else(String::new, Fastener::title)) }
+                        td { (fastener.map_or_else(String::new, Fastener::details)) }
+                    }
                     td.n { (p.facet_count()) }
                     td.n { (short_number(p.solid().volume())) }
                     td { (remarks(k, p)) }

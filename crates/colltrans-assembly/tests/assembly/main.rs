@@ -8,6 +8,8 @@ mod bounds;
 mod clashes;
 mod collection;
 mod constraints;
+mod fastened;
+mod fasteners;
 mod fuzz_corpus;
 mod hints;
 mod hostile;

@@ -516,7 +516,8 @@ bounds and rounding are multiples of the direction; other lengths are in the uni
   notes        merged vertices, repaired meshes, normalised quaternions"#;
 
 const JSON_ASSEMBLY: &str = r#"Answer of assembly:
-  {"parts": [{"name", "facets", "volume", "volume_bounds"}], "unit", "tolerance" (or "keep_apart"),
+  {"parts": [{"name", "facets", "volume", "volume_bounds", "fastener": {"kind", "size", "diameter", "length",
+     "width", "axis", "words", "metric", "head", "drive", "pitch", "by_name"}}], "unit", "tolerance" (or "keep_apart"),
    "overlaps": [{"parts": [a, b], "least_tolerance", "remains"}], "suggested_tolerance",
    "suggestions": [{"parts", "role", "tolerance", "why"}], "pairs": [{"parts", "role", "words"}],
    "liaisons": [{"parts": [a, b], "area", "area_bounds", "center"}],
@@ -525,7 +526,8 @@ const JSON_ASSEMBLY: &str = r#"Answer of assembly:
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
      "path": [{"parts", "direction", "travel", "turn": {"point", "axis", "turns", "pitch", "phase",
        "aside", "words", "proof": {"tolerance", "pairs"} or "not_proven"}}], "back", "within",
-     "ignored", "passed", "surfaces", "subassembly"}],
+     "ignored", "passed", "surfaces", "subassembly",
+     "unscrew": {"length", "turns", "pitch", "standard", "words"}}],
    "wanted" (of --remove): {"parts", "others", "least", "out"}, "rounds": [...],
    "assembly": [{"step", "after"}], "seconds": [...], "left": [...],
    "stuck": [{"parts", "because", "directions", "proof": {"proven": cells} or {"asked": directions},

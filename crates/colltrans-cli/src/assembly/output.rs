@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use colltrans::glam::DVec3;
 use colltrans_assembly::attempts::next_attempts;
 use colltrans_assembly::audit::{AuditOptions, AuditedPair, PairFinding, examine_overlap};
+use colltrans_assembly::fasteners::Unscrewing;
 use colltrans_assembly::hints::find_hints;
 use colltrans_assembly::plan::{Plan, precedence_graph};
 use colltrans_assembly::report::{facts, glb, html};
@@ -291,8 +292,9 @@ fn push_stage(text: &mut String, findings: &Analysis, stage: &Range<usize>) {
         0.0 => format!("away along {}", vector(d)),
         _ => format!("{} along {}", estimate(travel, 0.0), vector(d)),
     };
-    let (numbers, removed) =
-        (Plan::step_numbers(stage), escape_line(removed_names(findings, stage)));
+    let removed = findings.plan.describe_fasteners(assembly, stage);
+    let removed = removed.unwrap_or_else(|| removed_names(findings, stage));
+    let (numbers, removed) = (Plan::step_numbers(stage), escape_line(removed));
     let head = format!("  {numbers}. {removed}{within}: ");
     if let (Some(turn), [screwed, rest]) = (step.first_turn(), &step.path[..]) {
         let turns = match screwed.travel {
@@ -325,6 +327,9 @@ fn push_stage(text: &mut String, findings: &Analysis, stage: &Range<usize>) {
                 travel_text(leg.travel, leg.direction)
             );
         }
+    }
+    for turns in findings.plan.describe_unscrewing(stage, Unscrewing::words) {
+        let _ = writeln!(text, "     {}", escape_line(turns));
     }
     for ignored in steps.iter().filter_map(|step| step.describe_ignored(assembly)) {
         let _ = writeln!(text, "     {}", escape_line(ignored));

@@ -54,6 +54,28 @@ def test_the_plan_equals_that_of_the_command_line(cli: Path, gearbox: Assembly) 
     assert asked.proven is None and f"{asked.directions} directions asked" in asked.because
 
 
+def test_fasteners_equal_those_of_the_command_line(cli: Path, gearbox: Assembly) -> None:
+    command: list[str | Path] = [cli, "assembly", GEARBOX, "--json"]
+    told = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    known = {part["name"]: part["fastener"] for part in told["parts"] if "fastener" in part}
+    found = gearbox.fasteners()
+    assert found.keys() == known.keys() == {f"bolt_{k}" for k in range(4)}
+    for name, fastener in found.items():
+        its = known[name]
+        assert (fastener.kind, fastener.size, fastener.words) == (
+            its["kind"],
+            its["size"],
+            its["words"],
+        )
+        assert [fastener.diameter, fastener.length] == [its["diameter"], its["length"]]
+        assert [list(v) for v in fastener.axis] == its["axis"]
+    for step, its in zip(gearbox.plan().steps, told["plan"], strict=True):
+        assert (step.unscrewing is None) == ("unscrew" not in its)
+        if step.unscrewing is not None:
+            assert step.unscrewing.turns == its["unscrew"]["turns"]
+            assert step.unscrewing.words == its["unscrew"]["words"]
+
+
 def test_rooms_and_blocking_name_the_obstructing_parts(gearbox: Assembly) -> None:
     rooms = gearbox.rooms([[0, 0, 2], [0, 0, -1]])
     assert rooms.directions.tolist() == [[0, 0, 1], [0, 0, -1]]

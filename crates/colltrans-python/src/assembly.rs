@@ -19,6 +19,7 @@ use colltrans_assembly::audit::{
 };
 use colltrans_assembly::blocking::BlockingGraph;
 use colltrans_assembly::candidates::{CandidateOptions, find_candidates};
+use colltrans_assembly::fasteners::{Fastener, Fasteners};
 use colltrans_assembly::liaisons::find_liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::ContactMatrix;
@@ -56,7 +57,7 @@ type LegRow = (Vec<usize>, [f64; 3], f64, Option<TurnRow>);
 type TurnRow = ([f64; 3], f64, f64, [f64; 3], Option<f64>, String);
 /// A step of a plan: parts, direction, travel, bounds of the travel, moves out and back, the step that
 /// removed the group that contains these parts, the steps before it, ignored pairs, tolerated pairs, and
-/// three lists: parts that fall, parts that are off balance, support surfaces.
+/// three lists: parts that fall, parts that are off balance, support surfaces. At last the unscrewing.
 type StepRow = (
     Vec<usize>,
     [f64; 3],
@@ -68,7 +69,13 @@ type StepRow = (
     Vec<[usize; 2]>,
     Vec<PassedRow>,
     [Vec<usize>; 3],
+    Option<UnscrewingRow>,
 );
+/// Length, number of turns, pitch, and a description.
+type UnscrewingRow = (f64, f64, f64, String);
+/// Kind, designation and description of a fastener, its diameter, length and width, its axis, and whether it rests on
+/// its name.
+type FastenerRow = (&'static str, String, String, [f64; 3], [[f64; 3]; 2], bool);
 /// Two parts, their role, their tolerance, and a description of what is tolerated.
 type PassedRow = ([usize; 2], Option<&'static str>, Option<f64>, String);
 /// Label of a stage, its range of steps, and its travel.
@@ -417,6 +424,16 @@ impl Assembly {
         Ok(found.into_iter().map(row).collect())
     }
 
+    /// Returns the fastener that each part is.
+    fn fasteners(&self, py: Python<'_>) -> PyResult<Vec<Option<FastenerRow>>> {
+        let found = thread_error(py.detach(|| pool::run(|| Fasteners::find(&self.0))))?;
+        let row = |f: &Fastener| {
+            let (sizes, axis) = ([f.diameter, f.length, f.width], f.axis.map(|v| v.to_array()));
+            (f.kind.name(), f.designation.clone(), f.details(), sizes, axis, f.needs_name)
+        };
+        Ok((0..self.0.parts().len()).map(|part| found.get(part).map(row)).collect())
+    }
+
     fn group(&self, names: Vec<String>) -> PyResult<Vec<usize>> {
         self.0.parts_named(&names).or_raise()
     }
@@ -612,6 +629,7 @@ impl Assembly {
                 s.ignored,
                 passed,
                 named,
+                s.unscrewing.map(|u| (u.length, u.turns(), u.pitch, u.words())),
             )
         };
         let steps = steps.map(row).collect();

@@ -267,6 +267,9 @@ class Assembly:
     def suggestions(
         self, tolerance: float | None, stuck: list[list[str]]
     ) -> list[tuple[list[int], str | None, float | None, str]]: ...
+    def fasteners(
+        self,
+    ) -> list[tuple[str, str, str, list[float], list[list[float]], bool] | None]: ...
     def group(self, names: list[str]) -> list[int]: ...
     @property
     def names(self) -> list[str]: ...
@@ -331,6 +334,7 @@ class Assembly:
                 list[list[int]],
                 list[tuple[list[int], str | None, float | None, str]],
                 list[list[int]],
+                tuple[float, float, float, str] | None,
             ]
         ],
         list[tuple[str, list[int], float]],

@@ -23,6 +23,7 @@ __all__ = [
     "Assembly",
     "Audit",
     "Blocking",
+    "Fastener",
     "Move",
     "PairFit",
     "Plan",
@@ -32,6 +33,7 @@ __all__ = [
     "Step",
     "Stuck",
     "Turn",
+    "Unscrewing",
     "Wanted",
     "audit",
 ]
@@ -237,6 +239,62 @@ class PairFit:
 
 
 @dataclass(frozen=True)
+class Fastener:
+    """A part recognised as a fastener or another standard part, in the unit of the files.
+
+    Attributes
+    ----------
+    kind : str
+        ``"screw"``, ``"nut"``, ``"washer"``, ``"dowel"``, ``"circlip"``, ``"key"`` or
+        ``"bearing"``.
+    size : str
+        The designation in millimetres, for example ``"M5 x 20"``.
+    words : str
+        Head, drive and thread of a screw.
+    diameter : float
+        Of the shank, the cylinder or the hole; the width of a key.
+    length : float
+        The length of a screw without its head (with a countersunk head), or the height.
+    width : float
+        Of the head or the outside; the height of a key.
+    axis : tuple of tuple of float
+        A point on the axis, and its unit direction; of a screw towards the head.
+    by_name : bool
+        Whether the kind rests on the name too, because other parts have this shape.
+    """
+
+    kind: str
+    size: str
+    words: str
+    diameter: float
+    length: float
+    width: float
+    axis: tuple[tuple[float, ...], tuple[float, ...]]
+    by_name: bool
+
+
+@dataclass(frozen=True)
+class Unscrewing:
+    """The turns of a screw or nut whose thread is not modelled. The proof does not contain them.
+
+    Attributes
+    ----------
+    length : float
+        The length until the thread has left the hole.
+    turns : float
+    pitch : float
+        The pitch of the model, or the standard pitch of the metric size.
+    words : str
+        A description that names the source of the pitch.
+    """
+
+    length: float
+    turns: float
+    pitch: float
+    words: str
+
+
+@dataclass(frozen=True)
 class Step:
     """A step of a plan: a group that is removed.
 
@@ -273,6 +331,8 @@ class Step:
     surfaces : list of str
         The open surfaces on which the result depends: parts of the group or in its way that are not
         closed.
+    unscrewing : Unscrewing or None
+        The turns of a screw or nut without a modelled thread.
     """
 
     parts: list[str]
@@ -288,6 +348,7 @@ class Step:
     falls: list[str]
     off_balance: list[str]
     surfaces: list[str]
+    unscrewing: Unscrewing | None = None
 
 
 @dataclass(frozen=True)
@@ -905,6 +966,31 @@ class Assembly:
             tuple(unit.tolist()), dict(zip(self.parts, blockers, strict=True)), removable
         )
 
+    def fasteners(self) -> dict[str, Fastener]:
+        """Recognises screws, nuts, washers, dowels, circlips, keys and bearings.
+
+        The shape decides; a name alone is not enough. See the guide to assemblies.
+
+        Returns
+        -------
+        dict of str to Fastener
+            The fasteners by the names of their parts.
+
+        Examples
+        --------
+        >>> from colltrans import Assembly
+        >>> Assembly.read("data/gearbox_small").fasteners()["bolt_0"].kind
+        'screw'
+        """
+        return {
+            name: Fastener(
+                kind, size, words, d, length, width, (tuple(point), tuple(axis)), by_name
+            )
+            for name, found in zip(self.parts, self._assembly.fasteners(), strict=True)
+            if found is not None
+            for kind, size, words, (d, length, width), (point, axis), by_name in [found]
+        }
+
     def plan(
         self,
         directions: ArrayLike = (),
@@ -1016,12 +1102,15 @@ class Assembly:
                     after,
                     [(names[a], names[b]) for a, b in ignored],
                     [self._fit(*pair) for pair in passed],
-                    *map(self._names, named),
+                    self._names(falls),
+                    self._names(off_balance),
+                    self._names(surfaces),
+                    turns and Unscrewing(*turns),
                 )
                 for parts, d, travel, travel_bounds, (
                     path,
                     back,
-                ), within, after, ignored, passed, named in steps
+                ), within, after, ignored, passed, (falls, off_balance, surfaces), turns in steps
             ],
             [Stage(takes, range(*of), travel) for takes, of, travel in stages],
             self._names(last),

@@ -9,8 +9,8 @@
 //!   the files and permitted overlaps are contacts.
 //! - All other pairs are *apart*. They are reported if they are proven to be nearer than the clearance.
 //!
-//! Pairs with a role or tolerance of their own are meant to touch and have no clearance. Ignored and glued pairs are
-//! left out. Results do not depend on the number of threads. Memory is proportional to the number of reported pairs.
+//! Pairs with a role or tolerance of their own are meant to touch, and have no clearance unless a [level](ClearanceLevel)
+//! covers both parts. Ignored and glued pairs are left out. Results do not depend on the number of threads. Memory is proportional to the number of reported pairs.
 
 mod proofs;
 mod tables;
@@ -446,12 +446,9 @@ fn examine(
             AssemblyError::Query { a, b, source }
         })?;
     let clearance = options.clearance(bodies.assembly(), parts);
-    // Pairs with a role or tolerance of their own are meant to touch.
-    let may_touch =
-        options.allow_contact || bodies.assembly().pair_fit(parts[0], parts[1]).is_some();
     let is_violation = match &finding {
         PairFinding::Interfering(_) | PairFinding::Contained { .. } => true,
-        PairFinding::Touching(_) if may_touch => false,
+        PairFinding::Touching(_) if options.allow_contact => false,
         PairFinding::Touching(found) | PairFinding::Apart(found) => found.distance[1] < clearance,
     };
     let tolerance = bodies.pair_tolerance(parts);

@@ -334,6 +334,27 @@ fn roles_permit_overlaps_and_remove_the_clearance() {
 }
 
 #[test]
+fn levels_of_pairs_with_roles_count_contacts() {
+    let fits = [
+        PairFit { role: Some(Role::Press), tolerance: Some(0.25) },
+        PairFit { role: Some(Role::Press), tolerance: None },
+        PairFit { role: None, tolerance: Some(0.25) },
+    ];
+    for fit in fits {
+        let assembly = pressed().with_pair([&["pin"], &["body"]], fit).unwrap();
+        let level =
+            |name: &str| within(0.1).with_level(&assembly, [&[name], &["body"]], 0.15).unwrap();
+        let violations = |options: &AuditOptions| {
+            let found = audited(&assembly, 1e-6, options);
+            found.violations().map(|pair| (pair.parts, pair.clearance)).collect::<Vec<_>>()
+        };
+        assert_eq!(violations(&level("p*")), [([0, 1], 0.15)], "{fit:?}");
+        assert_eq!(violations(&level("lid")), [], "{fit:?}: another pair");
+        assert_eq!(violations(&level("pin").with_allow_contact(true)), [], "{fit:?}");
+    }
+}
+
+#[test]
 fn later_levels_replace_earlier_ones() {
     let assembly = pressed();
     let level = |options: AuditOptions, a: &str, b: &str, length| {
@@ -388,7 +409,7 @@ fn hostile_names_stay_in_their_cells() {
         lines[1].starts_with("'=1+1,\"a,\"\"b\"\"\\n<script>\",interfering,yes,0,,,0."),
         "{table}"
     );
-    assert!(lines[1].ends_with(",0.000001,,,,,"), "{table}");
+    assert!(lines[1].ends_with(",0.000001,,,,,,,"), "{table}");
     let json = serde_json::to_value(audit_json(&bodies, &within(0.0), &found)).unwrap();
     assert_eq!(json["pairs"][0]["parts"], serde_json::json!(names));
     assert_eq!(json["counts"]["violations"], 1);

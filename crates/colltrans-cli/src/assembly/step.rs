@@ -18,8 +18,8 @@ use crate::terminal::escape_line;
 const VARIABLE: &str = "COLLTRANS_STEP";
 /// Error message without a converter.
 const INSTALL_HINT: &str = "STEP files need a converter: run pip install 'colltrans[step]' (in a checkout: \
-                       pip install './python[step]') for the Python of `python3`, or name another one in \
-                       COLLTRANS_STEP; or tessellate each part to a mesh file in its place, and give the folder";
+                       pip install './python[step]') for the Python of `python3`, or set COLLTRANS_STEP to the \
+                       command of another Python, such as '/path/to/python -m colltrans.step'; or tessellate each part to a mesh file in its place, and give the folder";
 
 /// Checks whether a source is a STEP file, by its extension.
 pub(super) fn is_step(path: &Path) -> bool {
@@ -36,7 +36,7 @@ pub(super) fn convert_to_glb(path: &Path, chord: f64) -> Result<Vec<u8>, Failure
     if !path.metadata().map_err(unreadable)?.is_file() {
         return Err(failed("is not a regular file; give a STEP file".into()));
     }
-    let (mut command, name) = converter();
+    let (mut command, name) = converter()?;
     command.arg(path).args(["-o", "-", "--chord", &chord.to_string()]);
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let child = command.spawn().map_err(|e| match e.kind() {
@@ -57,17 +57,39 @@ pub(super) fn convert_to_glb(path: &Path, chord: f64) -> Result<Vec<u8>, Failure
 }
 
 /// Returns the converter and its name.
-fn converter() -> (Command, String) {
+///
+/// # Errors
+/// [`VARIABLE`] names a Python interpreter alone, which would run the STEP file as its program.
+fn converter() -> Result<(Command, String), Failure> {
     let named = std::env::var(VARIABLE).unwrap_or_default();
     let mut words = named.split_whitespace();
     let Some(program) = words.next() else {
         let mut command = Command::new("python3");
         command.args(["-m", "colltrans.step"]);
-        return (command, "colltrans.step".into());
+        return Ok((command, "colltrans.step".into()));
     };
+    let mut words = words.peekable();
+    if words.peek().is_none() && is_python(program) {
+        let text = format!(
+            "{VARIABLE}={}: names an interpreter alone; give the command of a converter, such as '{} -m colltrans.step'",
+            escape_line(program),
+            escape_line(program)
+        );
+        return Err(Failure::new(Code::Usage, text));
+    }
     let mut command = Command::new(program);
     command.args(words);
-    (command, program.into())
+    Ok((command, program.into()))
+}
+
+/// Checks whether a program has the name of a Python interpreter, such as `python3.12` or `pypy3`.
+fn is_python(program: &str) -> bool {
+    let name = Path::new(program).file_name().unwrap_or_default().to_string_lossy();
+    let name = name.strip_suffix(".exe").unwrap_or(&name);
+    let is_version = |rest: &str| rest.chars().all(|c| c.is_ascii_digit() || c == '.');
+    ["pythonw", "python", "pypy"]
+        .iter()
+        .any(|known| name.strip_prefix(known).is_some_and(is_version))
 }
 
 /// Runs the converter, and shows its messages as progress. Returns its output, its messages and its status.

@@ -62,6 +62,13 @@ fn step_file_is_converted_to_glb() {
         assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
         assert!(words.iter().all(|word| stderr(&output).contains(word)), "{}", stderr(&output));
     }
+    // The name of an interpreter alone would run the STEP file as its program.
+    for interpreter in ["python3", "/opt/bin/python3.12", "pypy3"] {
+        let output = run(interpreter, &[]);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        let words = format!("'{interpreter} -m colltrans.step'");
+        assert!(stderr(&output).contains(&words), "{}", stderr(&output));
+    }
     let output =
         run(&converter(at, "echo one >&2; echo 'a.step: no shape in it' >&2; exit 3"), &[]);
     assert!(stderr(&output).contains("no shape in it"), "{}", stderr(&output));

@@ -305,13 +305,13 @@ typedef struct colltrans_distance_answer {
 typedef struct colltrans_depth_answer {
     /** Outcome of the query. */
     colltrans_outcome outcome;
-    /** Proven lower bound of the depth of convex bodies; NaN for solids that overlap. */
+    /** Proven lower bound of the depth; NaN if it is unknown, as for open surfaces. */
     double lower;
-    /** Proven upper bound of the depth of convex bodies; NaN for solids that overlap. */
+    /** Proven upper bound of the depth; NaN if it is unknown. */
     double upper;
     /** For solids that overlap, the smallest tolerance at which they do not, otherwise NaN. */
     double least_tolerance;
-    /** Unit vector along which a translation of the moving body by `upper` separates convex bodies. */
+    /** Unit vector along which a translation of the moving body by `upper` separates the bodies. */
     double direction[3];
 } colltrans_depth_answer;
 
@@ -819,10 +819,7 @@ colltrans_status colltrans_within_proof(
     double length,
     const char **json);
 
-/**
- * Proves the depth. For solids the proof is about the shortest translation that separates them, whereas
- * `colltrans_depth` computes the least tolerance.
- */
+/** Proves the depth. For solids the bounds of the proof may be farther apart than those of `colltrans_depth`. */
 colltrans_status colltrans_depth_proof(
     const colltrans_body *moving,
     const colltrans_pose *moving_pose,

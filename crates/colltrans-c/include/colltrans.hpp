@@ -844,8 +844,7 @@ inline result<proof> within_proof(const body &moving, const pose &moving_pose, c
     });
 }
 
-/// Proves the depth. For solids the proof is about the shortest translation that separates them, whereas `depth`
-/// computes the least tolerance.
+/// Proves the depth. For solids the bounds of the proof may be farther apart than those of `depth`.
 inline result<proof> depth_proof(const body &moving, const pose &moving_pose, const body &fixed,
                                  const pose &fixed_pose) {
     return detail::text([&](auto out) {

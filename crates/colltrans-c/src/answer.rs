@@ -152,13 +152,13 @@ pub struct DistanceAnswer {
 pub struct DepthAnswer {
     /// Outcome of the query.
     pub outcome: Outcome,
-    /// Proven lower bound of the depth of convex bodies; NaN for solids that overlap.
+    /// Proven lower bound of the depth; NaN if it is unknown, as for open surfaces.
     pub lower: f64,
-    /// Proven upper bound of the depth of convex bodies; NaN for solids that overlap.
+    /// Proven upper bound of the depth; NaN if it is unknown.
     pub upper: f64,
     /// For solids that overlap, the smallest tolerance at which they do not, otherwise NaN.
     pub least_tolerance: f64,
-    /// Unit vector along which a translation of the moving body by `upper` separates convex bodies.
+    /// Unit vector along which a translation of the moving body by `upper` separates the bodies.
     pub direction: [f64; 3],
 }
 

@@ -162,8 +162,7 @@ pub unsafe extern "C" fn colltrans_within_proof(
     unsafe { prove_pair(PairQuestion::Within(length), bodies, poses, json) }
 }
 
-/// Proves the depth. For solids the proof is about the shortest translation that separates them, whereas
-/// `colltrans_depth` computes the least tolerance.
+/// Proves the depth. For solids the bounds of the proof may be farther apart than those of `colltrans_depth`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn colltrans_depth_proof(
     moving: *const Body,

@@ -30,6 +30,7 @@ use colltrans_kernel::serialization::named;
 use colltrans_solid::SolidPair;
 use colltrans_solid::body::Solid;
 use colltrans_solid::pair::OverlapDepth;
+use colltrans_solid::penetration::SolidPenetration;
 
 pub use cast::{CastRecord, ClearanceRecord, ContactRecord, SolidClearanceRecord};
 pub use free::{BlockedByRecord, FreeRecord, FreeRegionRecord};
@@ -511,8 +512,8 @@ impl PairQuestion {
 
     /// Computes the answer for solids, and its proof file. See
     /// [`ProofFile::with_solid_distance`](crate::ProofFile::with_solid_distance). That of a depth is
-    /// about translations ([`ProofFile::of_solid_depth`](crate::ProofFile::of_solid_depth)), the answer about
-    /// tolerances.
+    /// about translations ([`ProofFile::of_solid_depth`](crate::ProofFile::of_solid_depth)). Its bounds may be farther
+    /// apart than those of the record.
     ///
     /// # Errors
     /// Returns the errors of the query's method, and an error for a body that cannot be rebuilt from its own
@@ -574,16 +575,22 @@ impl PairAnswer {
 }
 
 impl PairAnswer<Solid> {
-    /// Converts the answer to a record. `pair` must be the pair of the query.
+    /// Converts the answer to a record. `pair` must be the pair of the query. Computes the depth of solids that overlap.
     ///
     /// # Errors
-    /// Returns an error if the points of the answer cannot be computed.
+    /// Returns an error if the points of the answer or the depth cannot be computed.
     pub fn record(&self, pair: &Pair<'_, Solid>) -> Result<Record, QueryError> {
         let surfaces = open_bodies(pair.moving(), pair.fixed());
         Ok(match self {
             Self::Distance(distance) => DistanceRecord::of_solids(distance, pair).into(),
             Self::Depth(depth) => DepthRecord { surfaces, ..DepthRecord::from_depth(depth) }.into(),
-            Self::OverlapDepth(depth) => DepthRecord::of_overlap(*depth, surfaces).into(),
+            Self::OverlapDepth(depth) => {
+                let record = DepthRecord::of_overlap(*depth, surfaces);
+                match record.outcome {
+                    Ending::Overlapping => record.with_solid_depth(&pair.depth()?).into(),
+                    _ => record.into(),
+                }
+            }
             Self::Within { answer, .. } => DistanceRecord::of_solids_within(answer, pair)?.into(),
         })
     }

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use colltrans::glam::DVec3;
 use colltrans::record::{DistanceRecord, PairAnswer, PairQuestion, Record};
-use colltrans::solid::SolidSteps;
+use colltrans::solid::{SolidDepth, SolidSteps};
 use colltrans::solid::{SolidPair as _, SolidPenetration as _};
 use colltrans::{ProofFile, Solid};
 use pyo3::prelude::*;
@@ -154,19 +154,19 @@ pub(crate) struct OverlapDepth {
     depth: colltrans::solid::OverlapDepth,
     query: Py<Pair>,
     /// Bounds of the shortest translation that separates the solids, computed on first access.
-    bounds: OnceLock<[f64; 2]>,
+    translated: OnceLock<SolidDepth>,
 }
 
 impl OverlapDepth {
-    /// Returns bounds of the shortest translation that separates the solids.
-    fn bounds(&self) -> PyResult<[f64; 2]> {
-        if let Some(bounds) = self.bounds.get() {
-            return Ok(*bounds);
+    /// Returns bounds of the shortest translation that separates the solids, and the translation.
+    fn translated(&self) -> PyResult<&SolidDepth> {
+        if let Some(found) = self.translated.get() {
+            return Ok(found);
         }
         let query = self.query.get();
         let Of::Solids(pair) = query.asked()? else { return Err(other_bodies_error()) };
         let found = Python::attach(|py| py.detach(|| pair.depth())).or_raise()?;
-        Ok(*self.bounds.get_or_init(|| found.bounds()))
+        Ok(self.translated.get_or_init(|| found))
     }
 }
 
@@ -180,13 +180,19 @@ getters!(OverlapDepth, |it| {
     /// shells.
     least_tolerance: Option<f64> = it.depth.least_tolerance;
     /// float: A lower bound of the length of the shortest translation that separates the solids; 0 if they do not
-    /// overlap. Both bounds are computed on first access.
-    lower: PyResult<f64> = Ok(it.bounds()?[0]);
+    /// overlap. Both bounds and the translation are computed on first access.
+    lower: PyResult<f64> = Ok(it.translated()?.lower);
     /// float: An upper bound of this length.
-    upper: PyResult<f64> = Ok(it.bounds()?[1]);
+    upper: PyResult<f64> = Ok(it.translated()?.upper);
+    /// ndarray of shape (3,): Unit vector in the world, along which the moving body leaves the fixed one; 0 if they do
+    /// not overlap.
+    direction(py): PyResult<Vector<'py>> = Ok(row(py, it.translated()?.direction));
+    /// ndarray of shape (3,): The shortest translation of the moving body that was found to separate the solids. Its
+    /// length is at most ``upper``, and a shorter one may exist.
+    translation(py): PyResult<Vector<'py>> = Ok(row(py, it.translated()?.translation));
 });
 
-number!(OverlapDepth, f64, |it| middle(it.bounds()?[0], it.bounds()?[1]),
+number!(OverlapDepth, f64, |it| middle(it.translated()?.lower, it.translated()?.upper),
     /// float: The middle of both bounds.
 );
 
@@ -352,7 +358,7 @@ impl Answer for PairAnswer {
         match self {
             Self::Depth(depth) => object(py, Depth { depth, query: asked }),
             Self::OverlapDepth(depth) => {
-                object(py, OverlapDepth { depth, query: asked, bounds: OnceLock::new() })
+                object(py, OverlapDepth { depth, query: asked, translated: OnceLock::new() })
             }
             Self::Distance(found) => DistanceOf::Convex(found).object(query),
             Self::Within { .. } => Err(other_bodies_error()),

@@ -8,7 +8,6 @@ use std::collections::HashMap;
 use colltrans::glam::DVec3;
 use colltrans::motion::Motion;
 use colltrans::record::{Fields, MotionRecord, PairQuestion, Record};
-use colltrans::solid::SolidPenetration as _;
 use colltrans::{Cast, Options, Pair, Placed, Pose, Solver};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -157,14 +156,8 @@ impl<'a> Work<'a> {
             let placed = |k: usize| -> Result<Placed<'_, _>, String> {
                 Ok(Placed { body: bodies[k].solid()?, pose: poses[k] })
             };
-            Pair::new(placed(0)?, placed(1)?).and_then(|pair| {
-                let mut record = question.answer_solids(&pair)?.record(&pair)?;
-                if let Record::Depth(of) = &mut record {
-                    let depth = pair.depth()?;
-                    (of.lower, of.upper) = (Some(depth.lower), Some(depth.upper));
-                }
-                Ok(record)
-            })
+            Pair::new(placed(0)?, placed(1)?)
+                .and_then(|pair| question.answer_solids(&pair)?.record(&pair))
         };
         record.map_err(|what| what.to_string())
     }

@@ -572,7 +572,7 @@ pub(crate) fn distance<'py>(
 /// Returns
 /// -------
 /// Depth or OverlapDepth
-///     Solids have an OverlapDepth: the smallest tolerance at which they would not overlap.
+///     Solids have an OverlapDepth, which also has the smallest tolerance at which they would not overlap.
 ///
 /// Examples
 /// --------

@@ -238,8 +238,9 @@ fn pairs(to: &mut Lines) {
         to.depth("depth", &DepthRecord::from_depth(&pair.depth().expect("an answer")));
         let solids: Pair<'_, Solid> =
             Pair::between(solid.at(Pose::IDENTITY), q.at(b)).expect("a pair");
-        let depth = solids.overlap_depth().expect("an answer");
-        to.depth("depth_solid", &DepthRecord::of_overlap(depth, Vec::new()));
+        let depth = PairQuestion::Depth.answer_solids(&solids).expect("an answer").record(&solids);
+        let Ok(Record::Depth(depth)) = depth else { panic!("{depth:?}") };
+        to.depth("depth_solid", &depth);
     }
 }
 

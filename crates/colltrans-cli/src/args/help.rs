@@ -401,8 +401,8 @@ Examples:
 
 pub(super) const DEPTH_NOTES: &str = "\
 Answers:
-  overlapping  of convex bodies the shortest translation of the moving body that separates them; of
-               parts the least tolerance with which they would not overlap
+  overlapping  bounds of the shortest translation of the moving body that separates them, and the one
+               that was found; of parts also the least tolerance with which they would not overlap
   touching     the bodies touch, or overlap by less than rounding resolves
   apart        0: the bodies have no common point
 
@@ -483,6 +483,8 @@ bounds and rounding are multiples of the direction; other lengths are in the uni
                "overlapping", "blocked", "undecided"; "error"
   time         of a motion: {"lower", "upper"}, from 0 at its start to 1 at its end
   direction    with --directions: the direction; of a depth: the unit vector of the shortest way out
+  separating_translation  of parts that overlap: the shortest translation of the moving ones that was
+               found to separate them, at most upper long
   lower upper  proven bounds of a distance or a depth; "closer" has only upper, "farther" only lower
   points       [moving, fixed]: the nearest points, in the world
   distance     of a clearance, blocked: safe travel, the lower bound of translation, never negative

@@ -58,6 +58,14 @@ fn depth_text(record: &DepthRecord, error: f64) -> String {
         let direction = unit_vector(direction.into());
         push_line(&mut text, "direction", &format!("{direction}, for the moving body"));
     }
+    if let Some(translation) = record.separating_translation {
+        let translation = point(translation.into(), error, record.upper.unwrap_or_default());
+        push_line(
+            &mut text,
+            "translation",
+            &format!("{translation} of the moving body separates them"),
+        );
+    }
     push_start_overlaps(&mut text, &record.start_overlaps, "overlap");
     push_open_surfaces(&mut text, &record.surfaces);
     text

@@ -60,10 +60,26 @@ fn depth_has_bounds_and_direction() {
     let mut apart = ask("depth", &APART, &[]);
     assert!(number(&apart["steps"].take(), "supports") > 0.0, "{apart}");
     assert_eq!(apart, json!({"outcome": "apart", "lower": 0.0, "upper": 0.0, "steps": null}));
-    // For parts the answer is the least tolerance, as for a clearance.
-    let told = ask("depth", &["cube.off", "dent.off", "--moving-pose", "0.9,0,0"], &[]);
-    let depth = number(&told["start_overlaps"][0], "least_tolerance");
-    assert!((depth - 0.1).abs() < 1e-6 && told.get("upper").is_none(), "{told}");
+    // For parts also the least tolerance, as for a clearance, and the translation.
+    let told = ask("depth", &DENTED, &[]);
+    let tolerance = number(&told["start_overlaps"][0], "least_tolerance");
+    assert!((tolerance - 0.1).abs() < 1e-6, "{told}");
+    let [lower, upper] = ["lower", "upper"].map(|bound| number(&told, bound));
+    assert!(lower <= 0.1 && 0.1 <= upper && upper - lower < 1e-9, "{told}");
+    let way: [f64; 3] = serde_json::from_value(told["separating_translation"].clone()).unwrap();
+    assert!((way[0] - 0.1).abs() < 1e-9 && way[1..] == [0.0; 2], "{told}");
+    // A part inside another one has a depth, but no tolerance.
+    let folder = folder();
+    let grain =
+        "OFF\n4 4 0\n0 0 0\n0.1 0 0\n0 0.1 0\n0 0 0.1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+    std::fs::write(folder.path().join("grain.off"), grain).unwrap();
+    let inside = ["grain.off", "dent.off", "--moving-pose", "0.5,0.5,0.25"];
+    let told = ask_in(folder.path(), "depth", &inside, &[]);
+    assert_eq!(told["start_overlaps"][0]["least_tolerance"], json!(null), "{told}");
+    assert!(number(&told, "lower") > 0.0 && number(&told, "upper") < 1.0, "{told}");
+    // An open surface has none.
+    let told = ask("depth", &["open.off", "cube.off", "--moving-pose", "0,0,0.5"], &["--open"]);
+    assert!(told["outcome"] == "overlapping" && told.get("upper").is_none(), "{told}");
     assert_eq!(ask("depth", &PARTS, &[])["outcome"], "apart");
     let touching = ["cube.off", "dent.off", "--moving-pose", "1,0,0"];
     assert_eq!(ask("depth", &touching, &[])["outcome"], "touching");
@@ -90,6 +106,7 @@ fn answers_are_printed_as_text() {
         (&[&["distance"], &DEEP[..]].concat(), "meeting: the bodies touch or overlap"),
         (&[&["depth"], &DEEP[..]].concat(), "direction    -1,0,0, for the moving body"),
         (&[&["depth"], &APART[..]].concat(), "apart: the bodies have no common point"),
+        (&[&["depth"], &DENTED[..]].concat(), "0,0 of the moving body separates them"),
         (
             &[&["within"], &APART[..], &["--length", "3"]].concat(),
             "closer: the bodies are no farther apart than 3",

@@ -7,6 +7,7 @@ use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::SolidPairSearch;
 use colltrans_solid::body::Solid;
 use colltrans_solid::pair::OverlapDepth;
+use colltrans_solid::penetration::SolidDepth;
 use glam::DVec3;
 
 use super::{
@@ -48,6 +49,8 @@ record! {
         pub outcome: Ending,
         /// Unit vector of the shortest translation of the moving body that separates the bodies.
         pub direction: Option<[f64; 3]>,
+        /// For solids, this translation. Its length is at most `upper`.
+        pub separating_translation: Option<[f64; 3]>,
         /// Proven lower bound of the depth.
         pub lower: Option<f64>,
         /// Proven upper bound of the depth.
@@ -180,7 +183,7 @@ impl DepthRecord {
     }
 
     /// Converts an answer of [`overlap_depth`](colltrans_solid::SolidPair::overlap_depth). `surfaces` lists
-    /// the open bodies.
+    /// the open bodies. [`Self::with_solid_depth`] adds the depth.
     pub fn of_overlap(depth: OverlapDepth, surfaces: Vec<&'static str>) -> Self {
         let OverlapDepth { meets, least_tolerance, .. } = depth;
         let outcome = match (least_tolerance, meets) {
@@ -193,5 +196,21 @@ impl DepthRecord {
             }
         };
         Self { outcome, lower: Some(0.0), upper: Some(0.0), surfaces, ..Self::default() }
+    }
+
+    /// Returns the record with the depth of solids that overlap, and with the translation that separates them. A depth
+    /// that is unknown, as of open surfaces, is not added.
+    #[must_use]
+    pub fn with_solid_depth(self, depth: &SolidDepth) -> Self {
+        if !(depth.upper > 0.0 && depth.upper.is_finite()) {
+            return self;
+        }
+        Self {
+            direction: Some(without_negative_zeros(depth.direction)),
+            separating_translation: Some(without_negative_zeros(depth.translation)),
+            lower: Some(depth.lower),
+            upper: Some(depth.upper),
+            ..self
+        }
     }
 }

@@ -111,7 +111,7 @@ pub(crate) struct AuditArguments {
     /// List at most N pairs as text
     #[arg(long, value_name = "N")]
     pub(crate) limit: Option<usize>,
-    /// Permitted overlap: chord errors of curved fits, press fits [default: precision of the files]
+    /// Permitted overlap, up to 32 times as deep at sharp tips [default: precision of the files]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) tolerance: Option<f64>,
     /// Number of threads [default: all cores]; the answer is the same

@@ -552,16 +552,18 @@ Examples:
 
 pub(super) const AUDIT_NOTES: &str = "\
 Findings, the worst first:
-  interfering  the parts overlap by more than the tolerance; `depth` bounds the shortest translation
-               that separates them, `translation` of the first part is the shortest one found
-  contained    one part lies inside the other
-  touching     they are at most the tolerance apart, or overlap within it, or their role permits it
+  interfering  the parts overlap, also after each is shrunk by half the tolerance; `depth` bounds the
+               shortest translation that separates them, `translation` of the first part is the
+               shortest one found
+  contained    one part lies inside the other, and their surfaces have no common point
+  touching     they are at most the tolerance apart, or the shrunk parts do not overlap, or their role
+               permits it. Sharp tips are shrunk by more: up to 32 times as deep as the tolerance
   apart        they are nearer than the clearance
 Text lists the violations: interfering (`by` the tolerance that would suffice), contained, or nearer
 than the clearance. Parts that touch violate a clearance that is larger than their distance, except
 with --allow-contact. Pairs with a role or a tolerance of their own (--press, --soft, --thread,
---snap, --fit) have no clearance, unless a --within names both parts. Pairs that are ignored or
-glued are left out.
+--snap, --fit) have no clearance, unless a --within names both parts: then they may not touch,
+either. Pairs that are ignored or glued are left out.
 
 With --json one object:
   parts unit tolerance notes   as of `assembly`

@@ -1,7 +1,7 @@
 //! Writes CSV in which text cells cannot break out of their cell or be read as formulas.
 //!
-//! Spreadsheet programs evaluate a cell that begins with `=`, `+`, `-` or `@`, some also with their full-width forms.
-//! Such a text is prefixed with an apostrophe, which marks text there. A text that begins with an apostrophe gets another
+//! Spreadsheet programs evaluate a cell that begins with `=`, `+`, `-` or `@`, some also with their full-width forms or
+//! with blanks before them. Such a text is prefixed with an apostrophe, which marks text there. A text that begins with an apostrophe gets another
 //! one, so that different texts stay different. [Control characters](colltrans_mesh::plain) are escaped first, so that
 //! none precedes such a sign.
 
@@ -49,7 +49,9 @@ impl Table {
     /// Appends a text cell: escaped, quoted if it contains a separator or a quote.
     fn write_text_cell(&mut self, text: &str) {
         let text = escape_control(text);
-        let needs_mark = text.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠', '\'']);
+        let starts_formula =
+            text.trim_start().starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠']);
+        let needs_mark = starts_formula || text.starts_with('\'');
         let prefix = if needs_mark { "'" } else { "" };
         if text.contains([',', '"', ';']) {
             let _ = write!(self.text, "\"{prefix}{}\"", text.replace('"', "\"\""));
@@ -76,7 +78,9 @@ mod tests {
         table.push_row(&[Cell::Text("\u{1b}[31m\u{9b}\u{7f}"), Cell::Text("@\u{200b}")]);
         table.push_row(&[Cell::Text("plain"), Cell::Text("-x")]);
         table.push_row(&[Cell::Text("'=1+1"), Cell::Text("＝1+1")]);
-        let expected = "a,b\n'=1+1,-0.5\n\"a,\"\"b\"\"\\r\\nc\",\\t@x\n\\u{1b}[31m\\u{9b}\\u{7f},'@\\u{200b}\nplain,'-x\n''=1+1,'＝1+1\n";
+        table.push_row(&[Cell::Text("  =1+1"), Cell::Text("\u{3000}\u{a0}@x")]);
+        table.push_row(&[Cell::Text(" '=1"), Cell::Text(" a=1")]);
+        let expected = "a,b\n'=1+1,-0.5\n\"a,\"\"b\"\"\\r\\nc\",\\t@x\n\\u{1b}[31m\\u{9b}\\u{7f},'@\\u{200b}\nplain,'-x\n''=1+1,'＝1+1\n'  =1+1,'\u{3000}\u{a0}@x\n '=1, a=1\n";
         assert_eq!(table.into_text(), expected);
     }
 }

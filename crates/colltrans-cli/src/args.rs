@@ -39,7 +39,7 @@ pub(crate) use path::PathArguments;
 pub(crate) use placed::{DepthArguments, PlacedArguments, WithinArguments};
 pub(crate) use values::{Angles, Place, direction, normalised_pose_note, normalised_poses_note};
 use values::{
-    angles, answer_field, bytes, cuts, factor, length, picture, place, proof, solver, start,
+    angles, answer_field, bytes, cuts, factor, length, output_file, picture, place, solver, start,
     threads,
 };
 
@@ -218,7 +218,7 @@ pub(crate) struct PairArguments {
     #[arg(long, value_name = "OUT.svg", value_parser = picture)]
     pub(crate) picture: Option<PathBuf>,
     /// Write the proof and the bodies as a file for `colltrans verify`
-    #[arg(long, value_name = "OUT.json", value_parser = proof, conflicts_with = "directions")]
+    #[arg(long, value_name = "OUT.json", value_parser = output_file, conflicts_with = "directions")]
     pub(crate) save_proof: Option<PathBuf>,
     /// Convex bodies: a sideways overlap up to this length counts as sliding, not as contact; 0 stands
     /// for the rounding error

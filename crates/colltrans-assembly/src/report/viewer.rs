@@ -6,6 +6,7 @@
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use colltrans::Aabb;
+use colltrans_mesh::plain::escape_control;
 use glam::DVec3;
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
@@ -75,8 +76,8 @@ fn viewer_data(f: &Analysis) -> Value {
     })
 }
 
-/// Returns a part: vertices relative to the middle of the assembly in single precision, and triangles, both
-/// in Base64.
+/// Returns a part: its name without characters that are invisible or reverse the text, vertices relative to the middle of
+/// the assembly in single precision, and triangles, both in Base64.
 pub(super) fn part_data(part: &Part, colour: [f64; 3], middle: DVec3) -> Value {
     let solid = part.solid();
     let places = solid.vertices().iter().flat_map(|v| (*v - middle).as_vec3().to_array());
@@ -84,7 +85,7 @@ pub(super) fn part_data(part: &Part, colour: [f64; 3], middle: DVec3) -> Value {
     let corners = solid.triangles().iter().flatten();
     let triangles: Vec<u8> = corners.flat_map(|v| v.to_le_bytes()).collect();
     json!({
-        "name": part.name(),
+        "name": escape_control(part.name()),
         "colour": colour,
         "fixed": part.is_fixed(),
         "vertices": STANDARD.encode(vertices),

@@ -9,7 +9,7 @@ use colltrans_assembly::plan::PlanOptions;
 use colltrans_assembly_io::read::Split;
 
 use super::directions::WorkArguments;
-use super::values::{direction, factor, length, removed_legs, samples, threads};
+use super::values::{direction, factor, length, output_file, removed_legs, samples, threads};
 
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
@@ -95,15 +95,15 @@ pub(crate) struct AuditArguments {
     #[arg(long)]
     pub(crate) json: bool,
     /// Write all pairs as a table
-    #[arg(long, value_name = "OUT.csv")]
+    #[arg(long, value_name = "OUT.csv", value_parser = output_file)]
     pub(crate) csv: Option<PathBuf>,
     /// Write a report: a list of all pairs, with sections and a view of each
-    #[arg(long, value_name = "OUT.html")]
+    #[arg(long, value_name = "OUT.html", value_parser = output_file)]
     pub(crate) report: Option<PathBuf>,
     /// Write the violations as issues in the BIM Collaboration Format, with pictures
     ///
     /// Their time of creation is now, or `SOURCE_DATE_EPOCH` (seconds since 1970).
-    #[arg(long, value_name = "OUT.bcf")]
+    #[arg(long, value_name = "OUT.bcf", value_parser = output_file)]
     pub(crate) bcf: Option<PathBuf>,
     /// Write proofs of all pairs to a new or empty folder, for `colltrans verify`
     #[arg(long, value_name = "FOLDER")]

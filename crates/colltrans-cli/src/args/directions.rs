@@ -6,7 +6,7 @@ use clap::Args;
 use colltrans::removal::directions::FreeOptions;
 use colltrans_mesh::body::BodyOptions;
 
-use super::{BodyArguments, BodyMode, InputPair, PlaceArguments, length, proof};
+use super::{BodyArguments, BodyMode, InputPair, PlaceArguments, length, output_file};
 use crate::failure::Failure;
 
 #[derive(Debug, Args)]
@@ -27,7 +27,7 @@ pub(crate) struct DirectionsArguments {
     #[arg(long)]
     pub(crate) json: bool,
     /// Write the proof and the bodies as a file for `colltrans verify`
-    #[arg(long, value_name = "OUT.json", value_parser = proof)]
+    #[arg(long, value_name = "OUT.json", value_parser = output_file)]
     pub(crate) save_proof: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) work: WorkArguments,

@@ -11,7 +11,7 @@ use colltrans_mesh::body::BodyOptions;
 use super::values::{Place, normalised_poses_note, picture, place, vector};
 use super::{
     BODY_HEADING, BodyArguments, BodyMode, HullArguments, InputPair, PlaceArguments, direction,
-    length, proof,
+    length, output_file,
 };
 use crate::failure::{Code, Failure};
 
@@ -47,7 +47,7 @@ pub(crate) struct MotionArguments {
     #[arg(long, value_name = "OUT.svg", value_parser = picture, help_heading = OPTIONS)]
     pub(crate) picture: Option<PathBuf>,
     /// Write the proof and the bodies as a file for `colltrans verify`
-    #[arg(long, value_name = "OUT.json", value_parser = proof, help_heading = OPTIONS)]
+    #[arg(long, value_name = "OUT.json", value_parser = output_file, help_heading = OPTIONS)]
     pub(crate) save_proof: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) places: PlaceArguments,

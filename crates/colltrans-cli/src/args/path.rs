@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{factor, length, proof};
+use super::{factor, length, output_file};
 
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "they are flags of the command line")]
@@ -40,7 +40,7 @@ pub(crate) struct PathArguments {
     #[arg(long)]
     pub(crate) json: bool,
     /// Write the proof, the robot, its path and the scene as a file for `colltrans verify`
-    #[arg(long, value_name = "OUT.json", value_parser = proof)]
+    #[arg(long, value_name = "OUT.json", value_parser = output_file)]
     pub(crate) save_proof: Option<PathBuf>,
     /// Factor of the scene's meshes: 0.001 for millimetres
     #[arg(long, value_name = "FACTOR", value_parser = factor, default_value = "1")]

@@ -7,7 +7,7 @@ use colltrans::record::PairQuestion;
 use colltrans_mesh::body::BodyOptions;
 
 use super::{BODY_HEADING, BodyArguments, BodyMode, HullArguments, InputPair, PlaceArguments};
-use super::{length, picture, proof, single_mesh};
+use super::{length, output_file, picture, single_mesh};
 use crate::failure::Failure;
 
 #[derive(Debug, Args)]
@@ -28,7 +28,7 @@ pub(crate) struct PlacedArguments {
     #[arg(long, value_name = "OUT.svg", value_parser = picture)]
     pub(crate) picture: Option<PathBuf>,
     /// Write the proof and the bodies as a file for `colltrans verify`
-    #[arg(long, value_name = "OUT.json", value_parser = proof)]
+    #[arg(long, value_name = "OUT.json", value_parser = output_file)]
     pub(crate) save_proof: Option<PathBuf>,
     /// Whether the proof is about the common part, for which all bodies are parts.
     #[arg(skip)]

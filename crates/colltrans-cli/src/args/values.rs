@@ -242,10 +242,10 @@ pub(crate) fn picture(text: &str) -> Result<PathBuf, String> {
     Err(format!("pictures are SVG files; name it {}", svg.display()))
 }
 
-/// Parses the name of a proof file. Rejects `-`, because standard output has the answer.
-pub(crate) fn proof(text: &str) -> Result<PathBuf, String> {
+/// Parses the name of a file besides the answer. Rejects `-`, because standard output has the answer.
+pub(crate) fn output_file(text: &str) -> Result<PathBuf, String> {
     match text {
-        "-" => Err("standard output has the answer; give the name of a file for the proof".into()),
+        "-" => Err("standard output has the answer; give the name of a file".into()),
         name => Ok(name.into()),
     }
 }
@@ -401,9 +401,9 @@ mod tests {
     }
 
     #[test]
-    fn proof_on_standard_output_is_rejected() {
-        assert!(proof("a/b.json").is_ok());
-        assert!(proof("-").unwrap_err().contains("give the name of a file"));
+    fn file_on_standard_output_is_rejected() {
+        assert!(output_file("a/b.json").is_ok());
+        assert!(output_file("-").unwrap_err().contains("give the name of a file"));
     }
 
     #[test]

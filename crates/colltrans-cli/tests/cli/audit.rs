@@ -170,6 +170,9 @@ fn wrong_arguments_and_sources_are_rejected() {
         (["--ignore", "low,none"], "unknown part none"),
         (["--fit", "low,high"], "expected two names and a tolerance"),
         (["--limit", "few"], "--limit"),
+        (["--csv", "-"], "standard output has the answer"),
+        (["--report", "-"], "give the name of a file"),
+        (["--bcf", "-"], "give the name of a file"),
         (["--joint", "elbow"], "expected NAME=VALUE"),
     ] {
         refused(place, &given(&words), 2, &[said]);

@@ -12,6 +12,7 @@ from conftest import ROOT, Batch
 from colltrans import (
     ConvexPolyhedron,
     InputError,
+    Pair,
     Solid,
     SolidBlocked,
     SolidCast,
@@ -209,3 +210,57 @@ def test_solids_pickle_with_the_same_bits(bolt: Solid, plate: Solid) -> None:
         assert np.array_equal(again.triangles, solid.triangles)
         assert np.array_equal(again.face_indices, solid.face_indices)
         assert again.is_closed == solid.is_closed
+
+
+def box_distance(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Returns the signed distances of points from the surface of a box, by its closed form."""
+    beyond = np.maximum(low - points, points - high)
+    outside = np.linalg.norm(np.maximum(beyond, 0), axis=-1)
+    return np.where(beyond.max(axis=-1) < 0, beyond.max(axis=-1), outside)
+
+
+def test_signed_distances_agree_with_closed_forms() -> None:
+    random = np.random.default_rng(58)
+    solid = Solid.from_pieces([ConvexPolyhedron.cuboid([0, 0, 0], [3, 2, 1])])
+    points = random.uniform(-2, 5, (500, 3))
+    moved = np.array([10.0, -4.0, 0.5])
+    found = solid.signed_distances(points + moved, moved)
+    exact = box_distance(points, np.zeros(3), np.array([3.0, 2.0, 1.0]))
+    assert found.shape == (500, 2) and 5 < (exact < 0).sum() < 495
+    assert (found[:, 0] <= exact + 1e-14).all() and (exact - 1e-14 <= found[:, 1]).all()
+    assert (found[:, 1] - found[:, 0] < 1e-12).all()
+    assert solid.signed_distances(np.empty((0, 3))).shape == (0, 2)
+    with pytest.raises(InputError, match="points"):
+        solid.signed_distances([1.0, 2.0])
+    with pytest.raises(QueryError, match="point 1"):
+        solid.signed_distances([[0, 0, 0], [0, np.inf, 0]])
+    with pytest.raises(QueryError, match="round"):
+        solid.rounded(0.5).signed_distances([[0, 0, 0]])
+
+
+def test_surface_distances_are_the_walls_around_nested_bodies() -> None:
+    random = np.random.default_rng(7)
+    outer = Solid.from_pieces([ConvexPolyhedron.cuboid([0, 0, 0], [8, 8, 8])])
+    for _ in range(50):
+        low, high = np.sort(random.uniform(0.5, 7.5, (2, 3)), axis=0)
+        pair = Pair(ConvexPolyhedron.cuboid(low, high), outer)
+        lower, upper = pair.surface_distance()
+        wall = min(low.min(), (8 - high).min())
+        assert lower <= wall + 1e-14 and wall - 1e-14 <= upper and upper - lower < 1e-12
+        assert pair.distance().upper == 0
+
+
+def test_depth_of_solids_has_the_translation_that_separates_them() -> None:
+    post = Solid.from_pieces([ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 4])])
+    steps = [([0, 0, 0], [4, 2, 1]), ([0, 0, 0], [2, 2, 3])]
+    step = Solid.from_pieces([ConvexPolyhedron.cuboid(*corners) for corners in steps])
+    place = np.array([3, 0.5, 0.5])
+    found = Pair(post, step, moving_pose=place).depth()
+    assert found.lower <= 0.5 <= found.upper < 0.5 + 1e-9
+    assert np.allclose(found.translation, [0, 0, 0.5], atol=1e-9)
+    assert np.allclose(found.direction, [0, 0, 1])
+    away = Pair(post, step, moving_pose=place + found.translation)
+    assert away.depth().least_tolerance == 0
+    record = found.to_dict()
+    assert record["separating_translation"] == found.translation.tolist()
+    assert (record["lower"], record["upper"]) == (found.lower, found.upper)

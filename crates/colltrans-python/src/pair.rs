@@ -73,10 +73,15 @@ impl Pair {
             let (p, q): (&ConvexPolyhedron, &ConvexPolyhedron) = (&p.get().0, &q.get().0);
             colltrans::Pair::new(p.at(at), q.at(to)).map(Of::Convex)
         } else {
-            let [p, q] = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
-            colltrans::Pair::new(p.at(at), q.at(to)).map(Of::Solids)
+            return self.solids().map(Of::Solids);
         };
         pair.or_raise()
+    }
+
+    /// Builds the pair of the library, with both bodies as solids.
+    pub(crate) fn solids(&self) -> PyResult<colltrans::Pair<'_, Solid>> {
+        let [p, q] = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
+        colltrans::Pair::new(p.at(self.poses[0]), q.at(self.poses[1])).or_raise()
     }
 
     /// Runs a query of the library. Releases the interpreter's lock for solids, and for convex bodies if

@@ -1,7 +1,7 @@
 //! Queries: the functions of the package, and the query methods of casts and pairs.
 
 use colltrans::glam::DVec3;
-use colltrans::solid::{SolidCast as _, SolidOptions};
+use colltrans::solid::{SolidCast as _, SolidOptions, SolidPenetration as _};
 use colltrans::{Options, QueryError, Solver};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
@@ -17,7 +17,7 @@ use crate::placed::Placed;
 use crate::query::{Arguments, Cast};
 use crate::solid::Piece;
 use crate::solid_answer::SolidOverlapping;
-use crate::solid_cast::SolidCast;
+use crate::solid_cast::{SolidCast, run_patiently};
 use crate::solver::options_of;
 
 /// Runs a query and converts its answer to a Python object.
@@ -119,6 +119,37 @@ impl Pair {
     #[pyo3(signature = (*, accuracy=0.01))]
     fn common_part(slf: &Bound<'_, Self>, accuracy: f64) -> PyResult<CommonPart> {
         CommonPart::of_pair(slf, accuracy)
+    }
+
+    /// Computes the distance of the surfaces of both bodies, also if one lies inside the other: the thickness of the
+    /// wall between them.
+    ///
+    /// Of a solid from overlapping pieces, facets within the solid count as surface.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of (float, float)
+    ///     Proven lower and upper bound. Both are 0 if the surfaces have a common point.
+    ///
+    /// Raises
+    /// ------
+    /// QueryError
+    ///     A body is rounded.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron, Pair
+    /// >>> outer = ConvexPolyhedron.cuboid([0, 0, 0], [8, 8, 8])
+    /// >>> inner = ConvexPolyhedron.cuboid([3, 3, 3], [4, 6, 4])
+    /// >>> lower, upper = Pair(inner, outer).surface_distance()
+    /// >>> lower <= 2 <= upper, Pair(inner, outer).distance().upper
+    /// (True, 0.0)
+    fn surface_distance(slf: &Bound<'_, Self>) -> PyResult<(f64, f64)> {
+        let query = slf.clone().unbind();
+        run_patiently(slf.py(), &slf.get().bodies, move || {
+            let found = query.get().solids()?.surface_distance().or_raise()?;
+            Ok((found.lower, found.upper))
+        })
     }
 
     /// Checks whether the bodies meet; see :func:`intersects`.

@@ -19,7 +19,7 @@ use pyo3::types::PyTuple;
 use crate::arguments::{loader_hint, mesh_parts, refuse_file};
 use crate::arrays::{Indices, faces, ids, points, read_only, table};
 use crate::body::ConvexPolyhedron;
-use crate::errors::{OrRaise, input_error};
+use crate::errors::{OrRaise, error, input_error};
 use crate::frozen::{Options, Shown, getters, html, show};
 use crate::offset::ShrinkReport;
 use crate::placed::{Placed, place};
@@ -459,6 +459,47 @@ impl Solid {
         let solid = solid.clone().rounded(radius).or_raise()?;
         let source = Arc::new(Source::Rounded(slf.clone().unbind(), radius));
         Ok(Self { solid, precision: *precision, notes: notes.clone(), source })
+    }
+
+    /// Computes the distances of points from the surface of the solid, negative inside.
+    ///
+    /// Of a solid from overlapping pieces, facets within the solid count as surface.
+    ///
+    /// Parameters
+    /// ----------
+    /// points : array_like of shape (N, 3)
+    ///     Points in the world.
+    /// pose : array_like or Pose, optional
+    ///     Pose of the solid in the world; see :class:`Pose`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of shape (N, 2)
+    ///     Proven lower and upper bound of each distance. Both are 0 for a point on the surface.
+    ///
+    /// Raises
+    /// ------
+    /// QueryError
+    ///     The solid is rounded, or a point is not finite or out of range.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron, Solid
+    /// >>> cube = Solid.from_pieces([ConvexPolyhedron.cuboid([0, 0, 0], [4, 4, 4])])
+    /// >>> cube.signed_distances([[2, 2, 3], [7, 8, 2], [4, 1, 1]]).mean(axis=1).round(9).tolist()
+    /// [-1.0, 5.0, 0.0]
+    #[pyo3(signature = (points, pose=None))]
+    fn signed_distances<'py>(
+        slf: &Bound<'py, Self>,
+        points: &Bound<'py, PyAny>,
+        pose: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let places = self::points(points, "points")?;
+        let pose = crate::pose::pose(pose, "pose")?;
+        let solid = &slf.get().solid;
+        let found = slf.py().detach(|| solid.signed_distances(pose, &places));
+        let found = found.map_err(|what| error("QueryError", what))?;
+        table(slf.py(), found.iter().map(|of| [of.lower, of.upper]))
     }
 
     fn __reduce__<'py>(

@@ -103,7 +103,7 @@ def test_proofs_of_all_pairs_are_checked(tmp_path: Path, capfd: pytest.CaptureFi
     assert check.main([str(path) for path in sorted(folder.iterdir())]) == 3
     with pytest.raises(InputError, match="not empty"):
         audit(dict(zip(names, boxes, strict=True)), proofs=folder)
-    assert audit(dict(zip(names, boxes, strict=True))).proofs == ({},) * 4
+    assert audit(dict(zip(names, boxes, strict=True))).proofs == ({},) * 5
 
 
 def test_pairs_have_the_open_shells_of_their_parts() -> None:

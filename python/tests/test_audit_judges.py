@@ -95,7 +95,7 @@ def volume_by_rays(p: Mesh, q: Mesh, bounds: Floats) -> tuple[float, float]:
     line, winding = rows[:, 0].astype(int), rows[:, 2:].cumsum(axis=0)
     # The surfaces are closed, so that the sums are 0 at the end of each line.
     assert not winding[np.append(np.diff(line) != 0, True)].any()
-    both = (winding > 0).all(axis=1)[:-1]
+    both = np.asarray((winding > 0).all(axis=1))[:-1]
     lengths = np.bincount(line[:-1][both], np.diff(rows[:, 1])[both], CELLS * CELLS)
     # The variance within cells is at most that between neighbours.
     table = lengths.reshape(CELLS, CELLS)

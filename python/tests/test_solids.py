@@ -12,6 +12,7 @@ from conftest import ROOT, Batch
 from colltrans import (
     ConvexPolyhedron,
     InputError,
+    OverlapDepth,
     Pair,
     Solid,
     SolidBlocked,
@@ -216,7 +217,7 @@ def box_distance(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.nd
     """Returns the signed distances of points from the surface of a box, by its closed form."""
     beyond = np.maximum(low - points, points - high)
     outside = np.linalg.norm(np.maximum(beyond, 0), axis=-1)
-    return np.where(beyond.max(axis=-1) < 0, beyond.max(axis=-1), outside)
+    return np.asarray(np.where(beyond.max(axis=-1) < 0, beyond.max(axis=-1), outside))
 
 
 def test_signed_distances_agree_with_closed_forms() -> None:
@@ -233,7 +234,7 @@ def test_signed_distances_agree_with_closed_forms() -> None:
     with pytest.raises(InputError, match="points"):
         solid.signed_distances([1.0, 2.0])
     with pytest.raises(QueryError, match="point 1"):
-        solid.signed_distances([[0, 0, 0], [0, np.inf, 0]])
+        solid.signed_distances([[0.0, 0.0, 0.0], [0.0, np.inf, 0.0]])
     with pytest.raises(QueryError, match="round"):
         solid.rounded(0.5).signed_distances([[0, 0, 0]])
 
@@ -256,11 +257,12 @@ def test_depth_of_solids_has_the_translation_that_separates_them() -> None:
     step = Solid.from_pieces([ConvexPolyhedron.cuboid(*corners) for corners in steps])
     place = np.array([3, 0.5, 0.5])
     found = Pair(post, step, moving_pose=place).depth()
+    assert isinstance(found, OverlapDepth)
     assert found.lower <= 0.5 <= found.upper < 0.5 + 1e-9
     assert np.allclose(found.translation, [0, 0, 0.5], atol=1e-9)
     assert np.allclose(found.direction, [0, 0, 1])
-    away = Pair(post, step, moving_pose=place + found.translation)
-    assert away.depth().least_tolerance == 0
+    away = Pair(post, step, moving_pose=place + found.translation).depth()
+    assert isinstance(away, OverlapDepth) and away.least_tolerance == 0
     record = found.to_dict()
     assert record["separating_translation"] == found.translation.tolist()
     assert (record["lower"], record["upper"]) == (found.lower, found.upper)

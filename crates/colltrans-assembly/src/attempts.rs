@@ -80,7 +80,6 @@ pub fn next_attempts(found: &Analysis) -> Vec<Attempt> {
 
 /// Returns the power of ten at or below [`SLIDING_SHARE`] of the size of the assembly.
 fn sliding_tolerance(found: &Analysis) -> f64 {
-    let count = found.bodies.len();
-    let all = (1..count).fold(found.bodies.bounds(0), |all, k| all.union(&found.bodies.bounds(k)));
-    10_f64.powf((SLIDING_SHARE * all.side_lengths().length()).log10().floor())
+    let size = found.bodies.assembly().bounds().side_lengths().length();
+    10_f64.powf((SLIDING_SHARE * size).log10().floor())
 }

@@ -10,7 +10,8 @@
 //! - All other pairs are *apart*. They are reported if they are proven to be nearer than the clearance.
 //!
 //! Pairs with a role or tolerance of their own are meant to touch, and have no clearance unless a [level](ClearanceLevel)
-//! covers both parts. Ignored and glued pairs are left out. Results do not depend on the number of threads. Memory is proportional to the number of reported pairs.
+//! covers both parts. Ignored and glued pairs are left out. Results do not depend on the number of threads. Memory is
+//! proportional to the number of reported pairs.
 
 mod proofs;
 mod tables;

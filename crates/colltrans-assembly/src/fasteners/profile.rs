@@ -309,6 +309,13 @@ fn cut_rows(
     (edges.into_iter().enumerate().map(row).collect(), visits)
 }
 
+/// Returns the median of some numbers; 0 without any.
+pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut all: Vec<f64> = values.collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.0)
+}
+
 /// Returns the edge in which a facet meets a plane across the axis.
 fn cut_facet(corners: [DVec3; 3], normal: DVec3, z: f64) -> Option<Edge> {
     let mut ends = [DVec2::ZERO; 2];
@@ -361,9 +368,7 @@ impl Ring {
                 k += 1.0;
             }
         }
-        let mut radii: Vec<f64> = bins.iter().flatten().copied().collect();
-        radii.sort_by(f64::total_cmp);
-        let median = radii.get(radii.len() / 2).copied().unwrap_or(0.0);
+        let median = median(bins.iter().flatten().copied());
         let mut first = DVec2::ZERO;
         for (k, r) in bins.iter().enumerate() {
             let angle = (k as f64 + 0.5) / BINS as f64 * TAU;
@@ -374,7 +379,7 @@ impl Ring {
             most,
             least: if least.is_finite() { least } else { 0.0 },
             median,
-            cover: radii.len() as f64 / BINS as f64,
+            cover: bins.iter().flatten().count() as f64 / BINS as f64,
             symmetry: sums.map(|sum| share(sum.length(), length)),
             first: first * share(2.0 / BINS as f64, median),
         }

@@ -5,7 +5,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::profile::{Profile, Row};
+use super::profile::{Profile, Row, median};
 use super::sizes::{Metric, agrees, bearing, is_dowel, is_key, metric_washer};
 use super::{Drive, FastenerKind, Head};
 
@@ -81,13 +81,6 @@ pub(super) fn recognise_profile(mut profile: Profile, scale: f64) -> (Option<Sha
     let found =
         cylinder_shape(&mut profile, &rows, scale).or_else(|| screw_shape(&mut profile, &rows));
     (found, profile)
-}
-
-/// Returns the median of some numbers; 0 without any.
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut all: Vec<f64> = values.collect();
-    all.sort_by(f64::total_cmp);
-    all.get(all.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Returns the share of the rows for which a property holds.

@@ -132,8 +132,7 @@ impl Plan {
         let name = common_name(&names).filter(|_| names.len() > 1);
         let name = name.unwrap_or_else(|| names.join(", "));
         let count = if steps.len() > 1 { format!("{} x ", steps.len()) } else { String::new() };
-        let turns = |step: &Step| step.unscrewing.is_some() || step.first_turn().is_some();
-        let is_turned = steps.iter().all(turns);
+        let is_turned = self.is_unscrewed(stage);
         // A screw needs no name of its kind beside the verb.
         let size = match first.kind {
             FastenerKind::Screw if is_turned => &first.designation,
@@ -141,6 +140,12 @@ impl Plan {
         };
         let verb = if is_turned { "unscrew " } else { "" };
         Some(format!("{verb}{count}{size} ({name})"))
+    }
+
+    /// Checks whether each step of a stage begins with a turn along a thread, modelled or plain.
+    pub fn is_unscrewed(&self, stage: &Range<usize>) -> bool {
+        let turns = |step: &Step| step.unscrewing.is_some() || step.first_turn().is_some();
+        self.steps[stage.clone()].iter().all(turns)
     }
 
     /// Returns descriptions of the turns of plain threads in a stage, each once.

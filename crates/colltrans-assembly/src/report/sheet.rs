@@ -72,9 +72,11 @@ fn repeats_section(r: &Report, others: &[&Range<usize>]) -> Markup {
 
 /// Describes the action of a stage: `take out base`, `unscrew M5 x 20 (m5x20_1)`.
 fn action_text(r: &Report, stage: &Range<usize>) -> String {
-    let fasteners = r.f.plan.describe_fasteners(r.f.bodies.assembly(), stage);
-    let text = fasteners.unwrap_or_else(|| taken_parts_text(r, stage));
-    if text.starts_with("unscrew ") { text } else { format!("take out {text}") }
+    match r.f.plan.describe_fasteners(r.f.bodies.assembly(), stage) {
+        Some(text) if r.f.plan.is_unscrewed(stage) => text,
+        Some(text) => format!("take out {text}"),
+        None => format!("take out {}", taken_parts_text(r, stage)),
+    }
 }
 
 /// Describes the parts that a stage removes.

@@ -6,6 +6,8 @@
 //!   has the Lipschitz constant 2, so a cube of half diagonal `d` contains no point with a sum larger than that of its
 //!   centre plus `2 d`. The search divides cubes, best first. Cubes that are outside one body, or that cannot contain
 //!   deeper balls than those known, are dropped.
+//! - A thin common part, as of a press fit, has too many such cubes. There the search takes points of the facets of one
+//!   body that are inside the other one, and moves each half its depth inwards: balls that fill a layer.
 //! - Boxes parallel to the axes of the world: the depth is the smallest overlap along an axis, in either direction. The
 //!   boxes grow from cubes in these balls. The side that limits the depth moves to the next facet.
 //! - The grown box, less [`MARGIN`] noises, meets no facet, and contains the centre of the balls, which is inside.
@@ -21,7 +23,7 @@ use super::{ROUNDING, placed_solids};
 use crate::body::Solid;
 use crate::solve::nearest::triangle::Corners;
 use crate::solve::scene::PairFrame;
-use colltrans_convex::body::Aabb;
+use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::pair::Pair;
 
 /// Maximum number of centres of cubes at which the depth below both surfaces is computed.
@@ -32,6 +34,8 @@ const BALL_ACCURACY: f64 = 0.01;
 const EXACT: f64 = 1e-9;
 /// Maximum number of facets near the common part up to which boxes grow.
 const MAX_FACETS: usize = 1 << 12;
+/// Maximum number of facets of a body below which centres are tried.
+const MAX_LAYER_FACETS: usize = 1 << 7;
 /// Number of centres from which boxes grow.
 const MAX_BOXES: usize = 12;
 /// Maximum number of sides that are moved.
@@ -91,6 +95,11 @@ impl Balls {
     fn depth(&self) -> f64 {
         self.radii[0] + self.radii[1]
     }
+
+    /// Compares by depth, the deepest first.
+    fn cmp_depth(&self, other: &Self) -> Ordering {
+        other.depth().total_cmp(&self.depth())
+    }
 }
 
 /// A cube, by its centre and half a side.
@@ -131,7 +140,12 @@ pub(super) fn find_inner_pair(
     most: f64,
 ) -> Option<InnerPair> {
     let swept = [pair.moving().radius(), pair.fixed().radius()];
-    let found = find_balls(pair, scene, most - swept[0] - swept[1], MAX_CENTERS);
+    let mut found = Vec::new();
+    let is_complete = find_balls(pair, scene, most - swept[0] - swept[1], MAX_CENTERS, &mut found);
+    if !is_complete {
+        find_balls_in_layers(pair, scene, &mut found);
+        found.sort_by(Balls::cmp_depth);
+    }
     let balls = found.first()?;
     let radii = [0, 1].map(|k| balls.radii[k] + swept[k]);
     let balls = InnerPair::Balls { center: balls.center, radii };
@@ -151,7 +165,8 @@ pub(super) fn find_boxes(
     most: f64,
     max_centers: u32,
 ) -> Vec<InnerPair> {
-    let found = find_balls(pair, scene, most, max_centers);
+    let mut found = Vec::new();
+    find_balls(pair, scene, most, max_centers, &mut found);
     boxes_from(pair, scene, &found[..found.len().min(2)], most)
 }
 
@@ -166,26 +181,56 @@ fn boxes_from(
     balls.iter().filter_map(|balls| growth.boxes_around(balls, most)).collect()
 }
 
-/// Finds balls inside both cores, the deepest first. The search ends early when their depth is nearly `most`.
+/// Returns a lower and an upper bound of the depth of a point below the surface of a body.
+fn depth_below(solid: Placed<'_, Solid>, point: DVec3) -> [f64; 2] {
+    match core_distances(solid, &[point]).as_deref() {
+        Ok([found]) => [-found.upper, -found.lower],
+        _ => [f64::NEG_INFINITY; 2],
+    }
+}
+
+/// Finds balls inside both cores around points halfway between a facet of one body and the surface of the other one.
+fn find_balls_in_layers(pair: &Pair<'_, Solid>, scene: &PairFrame, found: &mut Vec<Balls>) {
+    let origin = pair.bodies.translations[0];
+    let solids = placed_solids(pair);
+    let room = common_box(scene);
+    for (body, is_moving) in [(0, true), (1, false)] {
+        let facets = near_facets(scene, scene.side(is_moving), &room);
+        let step = facets.len().div_ceil(MAX_LAYER_FACETS).max(1);
+        for facet in facets.iter().step_by(step) {
+            let polygon = clipped(*facet, &room);
+            let [a, b, c] = *facet;
+            let Some(outwards) = (b - a).cross(c - a).try_normalize() else { continue };
+            let on_facet = polygon.iter().sum::<DVec3>() / polygon.len() as f64 + origin;
+            let [depth, _] = depth_below(solids[1 - body], on_facet);
+            let center = on_facet - outwards * (0.5 * depth);
+            if !(depth > 0.0 && center.is_finite()) {
+                continue;
+            }
+            let radii = solids.map(|solid| depth_below(solid, center)[0]);
+            if radii[0] > 0.0 && radii[1] > 0.0 {
+                found.push(Balls { center, radii });
+            }
+        }
+    }
+}
+
+/// Finds balls inside both cores, the deepest first. The search ends early when their depth is nearly `most`. Returns
+/// whether no deeper balls exist, but for the accuracy.
 fn find_balls(
     pair: &Pair<'_, Solid>,
     scene: &PairFrame,
     most: f64,
     max_centers: u32,
-) -> Vec<Balls> {
+    found: &mut Vec<Balls>,
+) -> bool {
     let origin = pair.bodies.translations[0];
     let solids = placed_solids(pair);
-    // Returns a lower and an upper bound of the depth of a point below the surface of a body.
-    let depth_at = |body: usize, center| match core_distances(solids[body], &[center]).as_deref() {
-        Ok([found]) => [-found.upper, -found.lower],
-        _ => [f64::NEG_INFINITY; 2],
-    };
     let room = common_box(scene);
     let sides = room.side_lengths();
     let half = 0.5 * sides.min_element();
-    let mut found: Vec<Balls> = Vec::new();
     if half.is_nan() || half <= 0.0 {
-        return found;
+        return true;
     }
     let (mut best, mut centers) = (0.0_f64, 0);
     let mut open = BinaryHeap::new();
@@ -193,7 +238,7 @@ fn find_balls(
     let mut add = |center: DVec3, half: f64, mut depths: [f64; 2], best: &mut f64| {
         let (diagonal, mut radii) = (half * 3.0_f64.sqrt(), [0.0; 2]);
         for body in 0..2 {
-            let [lower, upper] = depth_at(body, center);
+            let [lower, upper] = depth_below(solids[body], center);
             (radii[body], depths[body]) = (lower, depths[body].min(upper + diagonal));
             if depths[body] <= 0.0 || depths[0] + depths[1] <= *best {
                 return None;
@@ -215,9 +260,14 @@ fn find_balls(
         open.extend(add(center, largest, [f64::INFINITY; 2], &mut best));
         centers += 1;
     }
+    let mut is_complete = true;
     while let Some(cube) = open.pop() {
         let goal = cube.bound.min(most);
-        if centers >= max_centers || best >= goal * (1.0 - BALL_ACCURACY) {
+        if best >= goal * (1.0 - BALL_ACCURACY) {
+            break;
+        }
+        if centers >= max_centers {
+            is_complete = false;
             break;
         }
         let half = 0.5 * cube.half;
@@ -228,8 +278,8 @@ fn find_balls(
             centers += 1;
         }
     }
-    found.sort_by(|f, g| g.depth().total_cmp(&f.depth()));
-    found
+    found.sort_by(Balls::cmp_depth);
+    is_complete
 }
 
 /// Growth of boxes between the facets of both bodies, in the setting frame.

@@ -3,6 +3,8 @@
 //! A polycube is a union of cells of side 1. Its surface is the list of squares between a cell of it and a cell outside
 //! of it. All coordinates are multiples of 1/4, so squared distances of squares and points have no rounding error.
 
+use std::f64::consts::TAU;
+
 use colltrans_convex::{ConvexPolyhedron, Pair, Pose};
 use colltrans_solid::{
     AsSolid, CommonPart, InnerPair, Overlap, Relation, Solid, SolidDepth, SolidPenetration,
@@ -10,7 +12,7 @@ use colltrans_solid::{
 };
 use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::block;
+use colltrans_testkit::shapes::{block, extruded, ring};
 use glam::{DQuat, DVec3};
 
 use crate::common::{at, cuboid, solid};
@@ -577,6 +579,31 @@ fn shells_that_bound_no_material_do_not_hide_containment() {
     let found = common(&pair(&inner, &wall));
     assert!(matches!(found.relation, Relation::PartlyContained(_)), "{found:?}");
     assert!(found.volume[0] <= 56.0 && 56.0 <= found.volume[1], "{found:?}");
+}
+
+#[test]
+fn a_pin_too_large_for_its_hole_is_as_deep_as_the_layer_is_thick() {
+    // The cubes of the search are a hundred times as large as the layer.
+    let hole: Vec<DVec3> = ring(32, 1.0, 0.0).collect();
+    let sleeve = block([-2.0, -2.0, -1.0], [2.0, 2.0, 1.0]);
+    let sleeve = solid(&sleeve.joined(&extruded(&hole, [-0.5, 0.5]).reversed()));
+    for (radius, angle) in [(1.001, 0.0), (1.01, 0.05), (1.000_01, 0.0)] {
+        let turned = DQuat::from_rotation_z(angle);
+        let pin: Vec<DVec3> = ring(32, radius, 0.0).map(|p| turned * p).collect();
+        let pin = solid(&extruded(&pin, [-0.4, 0.4]));
+        let thickness = (radius - 1.0) * (TAU / 64.0).cos();
+        for both in [pair(&pin, &sleeve), pair(&sleeve, &pin)] {
+            let depth = both.depth().expect("a depth");
+            assert!(depth.lower > 0.9 * thickness, "{depth:?}, {thickness}");
+            let Some(InnerPair::Balls { center, radii }) = depth.inner else {
+                continue;
+            };
+            for (body, radius) in [both.moving(), both.fixed()].into_iter().zip(radii) {
+                let below = body.signed_distances(Pose::IDENTITY, &[center]).expect("a point");
+                assert!(below[0].upper <= -radius, "{below:?}, {radius}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -42,8 +42,6 @@ pub const COLUMNS: &[&str] = &[
 const UNIT: i64 = 4;
 /// Bound on the differences by the rounding of a rotation, for coordinates below 16 and volumes below 64.
 const ROTATED: f64 = 1e-11;
-/// Maximum number of cells for convex bodies. Thin ones at an angle need more for the accuracy.
-const CONVEX_CELLS: u32 = 10_000;
 /// Maximum relative error of the volume of the common part of convex bodies as it is computed here.
 const CONVEX_VOLUME: f64 = 1e-9;
 
@@ -419,8 +417,7 @@ fn examine_convex(in_pieces: bool, random: &mut Random, tally: &mut Tally) -> Re
     tally.count("settings");
     let pair =
         Pair::new(solids[0].at(poses[0]), solids[1].at(poses[1])).map_err(|e| message(&e))?;
-    let options = VolumeOptions::default().with_max_cells(CONVEX_CELLS);
-    let common = pair.common_part(options).map_err(|e| message(&e))?;
+    let common = pair.common_part(VolumeOptions::default()).map_err(|e| message(&e))?;
     let depth = pair.depth().map_err(|e| message(&e))?;
     let volume = common_volume([&hulls[0], &hulls[1]], &poses);
     let say =

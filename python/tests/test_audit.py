@@ -25,7 +25,8 @@ def test_columns_equal_those_of_the_command_line(cli: Path) -> None:
         assert [found.parts[found.first[k]], found.parts[found.second[k]]] == pair["parts"]
         assert found.finding[k] == pair["finding"]
         assert found.violation[k] == pair["violation"]
-        for name in ("clearance", "tolerance", "distance", "depth", "volume", "translation"):
+        lengths = ("clearance", "tolerance", "distance", "depth", "wall", "least_tolerance")
+        for name in (*lengths, "volume", "translation"):
             value = getattr(found, name)[k]
             if name in pair:
                 assert value.tolist() == pair[name]
@@ -51,6 +52,10 @@ def test_boxes_interfere_touch_or_are_near() -> None:
     assert found.finding[:2].tolist() == ["interfering", "contained"]
     assert found.inner[:2].tolist() == [-1, 4]
     np.testing.assert_allclose(found.depth[0], 0.25)
+    assert found.wall[1, 0] <= 0.25 <= found.wall[1, 1] <= 0.25 + 1e-9
+    ends = found.wall_point[1] - found.other_wall_point[1]
+    np.testing.assert_allclose(np.linalg.norm(ends), 0.25)
+    assert np.isnan(np.delete(found.wall, 1, axis=0)).all()
     np.testing.assert_allclose(found.volume[:2].mean(axis=1), [0.25, 1 / 64], rtol=0.01)
     at = pairs.index((0, 3))
     assert found.finding[at] == "apart" and found.violation[at]

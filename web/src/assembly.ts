@@ -675,11 +675,12 @@ function summary({ violations, interfering, contained, touching, near }: Audit["
 }
 
 /** Formats the number that ranks a pair. */
-function measure({ finding, depth, distance }: Audit["pairs"][number], of: string): string {
+function measure({ finding, depth, distance, wall }: Audit["pairs"][number], of: string): string {
   const bounds = depth ?? distance;
   if (!bounds || finding === "touching") return finding;
-  const [from, to] = bounds.map((x) => (x === null ? "?" : short(x, 4)));
-  return `${finding === "apart" ? "distance" : finding} ${from === to ? from : `${from} to ${to}`} ${of}`;
+  const text = ([from, to]: (string | undefined)[]) => `${from === to ? from : `${from} to ${to}`} ${of}`;
+  const rounded = (pair: readonly (number | null)[]) => text(pair.map((x) => (x === null ? "?" : short(x, 4))));
+  return `${finding === "apart" ? "distance" : finding} ${rounded(bounds)}${wall ? `, wall ${rounded(wall)}` : ""}`;
 }
 
 const said = (error: unknown) => (error instanceof Error ? error.message : String(error));

@@ -184,6 +184,13 @@ pub struct Nearest {
     pub points: [DVec3; 2],
 }
 
+impl From<SurfaceDistance> for Nearest {
+    fn from(found: SurfaceDistance) -> Self {
+        let (distance, points) = ([found.lower, found.upper], [found.on_moving, found.on_fixed]);
+        Self { distance, points }
+    }
+}
+
 /// How two parts lie to each other.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PairFinding {
@@ -193,6 +200,8 @@ pub enum PairFinding {
     Contained {
         /// Index of the inner part.
         inner: usize,
+        /// Distance of both surfaces: how thick the wall between them is. 0 if open shells cross the other part.
+        wall: Nearest,
         /// Their common part.
         interference: Box<Interference>,
     },
@@ -234,6 +243,15 @@ impl PairFinding {
         match self {
             Self::Touching(found) | Self::Apart(found) => Some(found),
             Self::Interfering(_) | Self::Contained { .. } => None,
+        }
+    }
+
+    /// Returns the distance of the surfaces of a contained pair, which is the thickness of the wall between them; `None`
+    /// for others.
+    pub const fn wall(&self) -> Option<&Nearest> {
+        match self {
+            Self::Contained { wall, .. } => Some(wall),
+            Self::Interfering(_) | Self::Touching(_) | Self::Apart(_) => None,
         }
     }
 
@@ -497,7 +515,8 @@ fn pair_finding(
             let interference = Box::new(found);
             match (inner, common.relation) {
                 (Some(side), _) => {
-                    return Ok(PairFinding::Contained { inner: parts[side], interference });
+                    let wall = pair.surface_distance()?.into();
+                    return Ok(PairFinding::Contained { inner: parts[side], wall, interference });
                 }
                 // Open surfaces nearer than a minimum gap overlap without a common point of their interiors.
                 (None, Relation::Disjoint | Relation::Touching(_)) => {}
@@ -506,9 +525,8 @@ fn pair_finding(
         }
     }
     let found = surfaces.map_or_else(|| pair.surface_distance(), Ok)?;
-    let nearest =
-        Nearest { distance: [found.lower, found.upper], points: [found.on_moving, found.on_fixed] };
     let touches = found.place.is_some() || found.lower <= tolerance;
+    let nearest = found.into();
     Ok(if touches { PairFinding::Touching(nearest) } else { PairFinding::Apart(nearest) })
 }
 

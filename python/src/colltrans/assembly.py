@@ -103,6 +103,11 @@ class Audit:
         A point inside both parts, or else the nearest point of the first part.
     other_point : ndarray of shape (N, 3)
         The nearest point of the second part, of parts that touch or are apart.
+    wall : ndarray of shape (N, 2)
+        Bounds of the distance of the surfaces of contained parts: how thick the wall between them
+        is.
+    wall_point, other_wall_point : ndarray of shape (N, 3)
+        The nearest points of the surfaces of the first and the second part, of contained parts.
     least_tolerance : ndarray of shape (N,)
         The tolerance with which parts that interfere would touch; NaN if there is none.
     open_shells : ndarray of bool, shape (N, 2)
@@ -130,6 +135,9 @@ class Audit:
     translation: Floats
     point: Floats
     other_point: Floats
+    wall: Floats
+    wall_point: Floats
+    other_wall_point: Floats
     least_tolerance: Floats
     open_shells: NDArray[np.bool_]
     examined: int

@@ -31,8 +31,8 @@ impl Quantity {
 }
 
 /// All numbers of a pair, in the order of the columns. In JSON `point` and `other_point` are `points` of parts that touch
-/// or are apart.
-pub static QUANTITIES: [Quantity; 9] = [
+/// or are apart, and `wall_point` and `other_wall_point` are `wall_points`.
+pub static QUANTITIES: [Quantity; 12] = [
     Quantity {
         name: "clearance",
         columns: &["clearance"],
@@ -77,6 +77,21 @@ pub static QUANTITIES: [Quantity; 9] = [
         name: "other_point",
         columns: &["other_x", "other_y", "other_z"],
         values: |pair| Some(pair.finding.nearest()?.points[1].to_array().to_vec()),
+    },
+    Quantity {
+        name: "wall",
+        columns: &["wall_lower", "wall_upper"],
+        values: |pair| Some(pair.finding.wall()?.distance.to_vec()),
+    },
+    Quantity {
+        name: "wall_point",
+        columns: &["wall_x", "wall_y", "wall_z"],
+        values: |pair| Some(pair.finding.wall()?.points[0].to_array().to_vec()),
+    },
+    Quantity {
+        name: "other_wall_point",
+        columns: &["other_wall_x", "other_wall_y", "other_wall_z"],
+        values: |pair| Some(pair.finding.wall()?.points[1].to_array().to_vec()),
     },
 ];
 
@@ -190,6 +205,9 @@ fn pair_json(assembly: &Assembly, pair: &AuditedPair) -> Value {
     }
     if let Some(found) = pair.finding.nearest() {
         object["points"] = json!(found.points.map(|point| point.to_array()));
+    }
+    if let Some(found) = pair.finding.wall() {
+        object["wall_points"] = json!(found.points.map(|point| point.to_array()));
     }
     object
 }

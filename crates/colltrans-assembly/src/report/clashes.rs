@@ -363,8 +363,12 @@ pub(super) fn facts(assembly: &Assembly, pair: &AuditedPair) -> Vec<Fact> {
     if let Some(found) = pair.finding.nearest() {
         push("distance", bounds_text(found.distance, unit, digits));
     }
-    let [x, y, z] = pair.finding.place().to_array().map(short_number);
-    push("place", with_unit(&format!("({x}, {y}, {z})"), unit));
+    if let Some(found) = pair.finding.wall() {
+        push("wall between the surfaces", bounds_text(found.distance, unit, DIGITS[0]));
+        let [from, to] = found.points.map(coordinates_text);
+        push("thinnest place of the wall", with_unit(&format!("{from} to {to}"), unit));
+    }
+    push("place", with_unit(&coordinates_text(pair.finding.place()), unit));
     push("required clearance", with_unit(&rounded_number(pair.clearance, digits), unit));
     push("tolerance", length_text(pair.tolerance, assembly));
     if let Some(role) = assembly.pair_fit(pair.parts[0], pair.parts[1]).and_then(|fit| fit.role) {
@@ -376,6 +380,12 @@ pub(super) fn facts(assembly: &Assembly, pair: &AuditedPair) -> Vec<Fact> {
         push("open shells, without an inside", open.join(", "));
     }
     facts
+}
+
+/// Formats the coordinates of a point.
+fn coordinates_text(at: DVec3) -> String {
+    let [x, y, z] = at.to_array().map(short_number);
+    format!("({x}, {y}, {z})")
 }
 
 /// Formats a length in the unit of the assembly.

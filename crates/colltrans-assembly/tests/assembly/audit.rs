@@ -101,6 +101,8 @@ struct BoxPair {
     depth: f64,
     /// Whether the first, or the second, lies inside the other one, without common points of the surfaces.
     inside: [bool; 2],
+    /// Distance of the surfaces, if one box lies inside the other.
+    wall: f64,
 }
 
 impl BoxPair {
@@ -110,11 +112,15 @@ impl BoxPair {
         let inside = |x: &colltrans::Aabb, y: &colltrans::Aabb| {
             x.low.cmpgt(y.low).all() && x.high.cmplt(y.high).all()
         };
+        let wall = |x: &colltrans::Aabb, y: &colltrans::Aabb| {
+            (x.low - y.low).min(y.high - x.high).min_element()
+        };
         Self {
             distance: (-common).max(DVec3::ZERO).length(),
             common,
             depth: (a.high - b.low).min(b.high - a.low).min_element(),
             inside: [inside(&a, &b), inside(&b, &a)],
+            wall: wall(&a, &b).max(wall(&b, &a)),
         }
     }
 }
@@ -165,8 +171,11 @@ fn scattered_boxes_have_the_findings_of_closed_forms() {
                     assert!(encloses(it.common.volume, volume, 0.011), "{it:?}");
                     counts[0] += 1;
                 }
-                PairFinding::Contained { inner, interference: it } => {
+                PairFinding::Contained { inner, wall, interference: it } => {
                     assert!(contains && exact.inside[usize::from(*inner == b)]);
+                    assert!(encloses(wall.distance, exact.wall, 1e-9), "{wall:?}");
+                    let [p, q] = wall.points;
+                    assert!((p.distance(q) - exact.wall).abs() < 1e-12);
                     assert!(encloses(it.depth.bounds(), exact.depth, 1e-9), "{it:?}");
                     counts[1] += 1;
                 }
@@ -266,8 +275,10 @@ fn bodies_in_cavities_are_apart_and_in_walls_contained() {
         other => panic!("{other:?}"),
     }
     match inside(0.5, 1.5) {
-        Some(PairFinding::Contained { inner: 1, interference: it }) => {
+        Some(PairFinding::Contained { inner: 1, wall, interference: it }) => {
             assert!(encloses(it.common.volume, 1.0, 0.011), "{it:?}");
+            // The outer surface and the cavity are both 0.5 away.
+            assert!(encloses(wall.distance, 0.5, 1e-9), "{wall:?}");
         }
         other => panic!("{other:?}"),
     }
@@ -409,7 +420,9 @@ fn hostile_names_stay_in_their_cells() {
         lines[1].starts_with("'=1+1,\"a,\"\"b\"\"\\n<script>\",interfering,yes,0,,,0."),
         "{table}"
     );
-    assert!(lines[1].ends_with(",0.000001,,,,,,,"), "{table}");
+    // Without a distance, a wall, an inner part, a role, open shells and proofs.
+    let empty = ",".repeat(3 + 8 + 4);
+    assert!(lines[1].ends_with(&format!(",0.000001{empty}")), "{table}");
     let json = serde_json::to_value(audit_json(&bodies, &within(0.0), &found)).unwrap();
     assert_eq!(json["pairs"][0]["parts"], serde_json::json!(names));
     assert_eq!(json["counts"]["violations"], 1);
@@ -463,6 +476,8 @@ fn columns_hold_the_numbers_of_the_json() {
             let known = match quantity.name {
                 "point" => json.get("point").unwrap_or_else(|| &json["points"][0]),
                 "other_point" => &json["points"][1],
+                "wall_point" => &json["wall_points"][0],
+                "other_wall_point" => &json["wall_points"][1],
                 name => &json[name],
             };
             let numbers: Vec<f64> = match known {

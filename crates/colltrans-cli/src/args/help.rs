@@ -573,6 +573,7 @@ With --json one object:
   pairs   [{\"parts\": [a, b], \"finding\", \"violation\", \"clearance\", \"tolerance\", \"role\"}] with
           \"distance\", \"points\" (of touching, apart) or \"depth\", \"translation\", \"volume\", \"box\",
           \"least_tolerance\", \"point\", \"inner\" (of contained). Lengths and volumes are proven [lower, upper]
+          \"wall\", \"wall_points\" (of contained): the distance of both surfaces, and their nearest points
           \"open\": the parts with open shells, whose volume and containment are those of closed shells
           With --proofs also \"proofs\", the file of each claim (\"distance\", \"depth\", \"common_part\"),
           and \"unproven\", the reason why a claim has no proof

@@ -180,6 +180,10 @@ pub(crate) fn finding_text(assembly: &Assembly, pair: &AuditedPair) -> String {
     if let PairFinding::Apart(found) = &pair.finding {
         let _ = write!(text, " and {}", point(found.points[1], 0.0, extent));
     }
+    if let Some(wall) = pair.finding.wall() {
+        let [from, to] = wall.points.map(|at| point(at, 0.0, extent));
+        let _ = write!(text, ", wall {} from {from} to {to}", interval(wall.distance));
+    }
     text
 }
 

@@ -67,6 +67,7 @@ fn violations_are_listed_worst_first_with_exit_code_1() {
     }
     assert!(lines[0].starts_with(expected[0]) && lines[1].starts_with(expected[1]), "{found}");
     assert!(lines[0].contains(", volume 0.25") && lines[0].contains(", at "), "{found}");
+    assert!(lines[1].contains(", wall 0.25") && !lines[0].contains("wall"), "{found}");
     assert!(found.contains("clearance: 0.6\n"), "{found}");
     let counts = "1 interfering, 1 contained, 1 touching, 5 nearer than the clearance";
     assert!(found.contains(counts), "{found}");
@@ -111,6 +112,12 @@ fn json_and_table_have_all_pairs() {
         (&serde_json::json!([]), &false.into())
     );
     assert_eq!(pairs[1]["inner"], "grain");
+    let wall: [f64; 2] = serde_json::from_value(pairs[1]["wall"].clone()).unwrap();
+    assert!(wall[0] <= 0.25 && 0.25 <= wall[1] && wall[1] - wall[0] < 1e-9, "{wall:?}");
+    let [outer, inner]: [[f64; 3]; 2] =
+        serde_json::from_value(pairs[1]["wall_points"].clone()).unwrap();
+    // The faces at 0 and at 0.25 of one axis.
+    assert!((0..3).any(|axis| [outer[axis], inner[axis]] == [0.0, 0.25]), "{outer:?} {inner:?}");
     assert_eq!(found["counts"]["violations"], 2);
     let bounds: [f64; 2] = serde_json::from_value(pairs[0]["depth"].clone()).unwrap();
     assert!(bounds[0] <= 0.25 && 0.25 <= bounds[1] && bounds[1] - bounds[0] < 1e-9, "{bounds:?}");
@@ -120,9 +127,10 @@ fn json_and_table_have_all_pairs() {
     assert!(lines[0].starts_with("first,second,finding,violation,clearance,distance_lower"));
     assert!(lines[1].starts_with("low,high,interfering,yes,0,,,0.2"), "{table}");
     assert!(lines[3].starts_with("near,on,touching,no,0,0,0,,,"), "{table}");
-    let ending = ",x,y,z,tolerance,other_x,other_y,other_z,inner,role,open,proofs";
+    let ending = ",tolerance,other_x,other_y,other_z,wall_lower,wall_upper,wall_x,wall_y,wall_z,\
+                  other_wall_x,other_wall_y,other_wall_z,inner,role,open,proofs";
     assert!(lines[0].ends_with(ending), "{table}");
-    assert!(lines[2].ends_with(",,,,grain,,,"), "{table}");
+    assert!(lines[2].contains(",,,,0.2") && lines[2].ends_with(",grain,,,"), "{table}");
     let columns = lines[0].split(',').count();
     assert!(lines.iter().all(|line| line.split(',').count() == columns), "{table}");
     let one = text(folder.path(), &["cubes.toml", "--json", "--threads", "1"], 1);

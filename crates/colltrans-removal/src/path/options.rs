@@ -159,7 +159,8 @@ pub struct SearchWork {
     pub casts: usize,
     /// Number of pairs of directions of two bodies that were searched for openings.
     pub openings: usize,
-    /// Number of node visits of these searches.
+    /// Number of node visits of these searches, including the comparisons of the boxes of both bodies and look-ups of
+    /// known openings, and of tests of facets that were hit before.
     pub looks: u64,
     /// Number of pairs of bodies whose free directions were computed for a last leg in another direction.
     pub free_sets: usize,

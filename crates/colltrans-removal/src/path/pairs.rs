@@ -30,6 +30,10 @@ type OpeningKey = ([u64; 3], [usize; 2], [u64; 2]);
 
 /// Maximum number of stored pairs of facets that were hit.
 const MAX_HIT: usize = 32;
+/// Number of node visits for which a test of two facets that were hit counts, and building a cast.
+const HIT_WORK: u64 = 8;
+/// Number of node visits for which a query of openings counts, even if its result is known.
+const OPENING_WORK: u64 = 4;
 
 /// Two bodies of the search, with cached results.
 pub(super) struct BodyPair<'a> {
@@ -111,6 +115,7 @@ impl<'a> BodyPair<'a> {
         if let Some(&room) = self.free_travels.get(&key) {
             return Ok(room);
         }
+        searched.looks += (self.hit.len() as u64 + 1) * HIT_WORK;
         let cast = self.cast_along(by, d)?;
         // Facets that were hit last often block again after a short distance, also along other directions.
         let soon = |facets: &[u32; 2]| {
@@ -186,6 +191,7 @@ impl<'a> BodyPair<'a> {
         if self.constant_travel.is_some() {
             return Ok(&[]);
         }
+        searched.looks += OPENING_WORK;
         let two_sided = self.placed.map(|placed| !placed.body.is_closed());
         let query = OpeningQuery { from: by, along, end, far, two_sided };
         let [a, b] = &self.boxes;

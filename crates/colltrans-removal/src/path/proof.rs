@@ -46,12 +46,11 @@ pub(super) fn leg_cast(
     displaced_cast(pair, by, motion)?.with_options(options)
 }
 
-/// Checks whether a certificate proves that the bodies are apart at the start and do not collide on the leg.
+/// Checks whether a certificate proves that the bodies are apart at the start and do not collide on the leg. A contact
+/// beyond the end of the leg, before that of the cast, does not matter: a leg may end just before a wall.
 pub(super) fn proves_leg(certificate: &SolidCertificate, last: bool) -> bool {
     let end = if last { f64::INFINITY } else { 1.0 };
-    matches!(certificate.start, StartProof::Apart(_))
-        && certificate.stop.is_none()
-        && certificate.lower >= end
+    matches!(certificate.start, StartProof::Apart(_)) && certificate.lower >= end
 }
 
 /// Certifies the legs of a plan. Returns `None` if a leg cannot be proven.

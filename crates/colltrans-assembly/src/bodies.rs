@@ -350,7 +350,7 @@ impl<'a> Bodies<'a> {
     }
 
     /// Returns the shrunk solids of two parts in queries of this pair.
-    fn pair_solids(&self, [a, b]: [usize; 2]) -> [&Solid; 2] {
+    pub(crate) fn pair_solids(&self, [a, b]: [usize; 2]) -> [&Solid; 2] {
         [&self.pair_body([a, b]).solid, &self.pair_body([b, a]).solid]
     }
 
@@ -563,6 +563,15 @@ impl<'a> Bodies<'a> {
             None if !crossing => start,
             _ => StartOverlap::Ignore,
         }
+    }
+
+    /// Checks whether two parts are apart and block each other without exceptions: no contacts are ignored, and the pair
+    /// tolerates none, other than those within a tolerance of its own.
+    pub(crate) fn blocks_plainly(&self, [a, b]: [usize; 2]) -> bool {
+        let own = self.tolerated_contacts([a, b]);
+        matches!(own, None | Some(PairTolerance::Within(_)))
+            && self.assembly.ignored_contacts(a, b).is_none()
+            && !self.overlaps(a, b)
     }
 
     /// Checks whether a plan disregards contacts of two parts at the start: all contacts, contacts of a snap

@@ -13,6 +13,7 @@
 //! followed by a move, which its own search proves (module `bayonet`).
 
 mod bayonet;
+mod enclosure;
 mod interlock;
 mod known_parts;
 mod lazy_search;
@@ -119,6 +120,17 @@ pub struct Plan {
     /// For a plan that removes selected parts: which other parts are removed with them. `None` for a plan of all
     /// parts.
     pub selection: Option<SelectedRemoval>,
+}
+
+impl Plan {
+    /// Returns the parts that stay although all parts, or the selected ones, were to be removed: the
+    /// [remaining](Self::remaining) parts, or the [base](Self::base) if it is an interlocked group.
+    pub fn parts_left(&self) -> &[usize] {
+        if self.interlocked.iter().any(|group| group.parts == self.base) {
+            return &self.base;
+        }
+        &self.remaining
+    }
 }
 
 /// Computes a plan that takes all parts apart.
@@ -363,7 +375,7 @@ impl<'a> Planner<'a> {
             if removal.is_none() {
                 (removal, moves) = self.search_path(&order, &left, among, movable)?;
             }
-            if removal.is_none() {
+            if removal.is_none() && moves != Some(PathSearch::Enclosed) {
                 let found =
                     bayonet::search_bayonet(bodies, &order, &left, self.options, self.watch)?;
                 removal = found.map(|Bayonet { turn, direction, travel }| GroupRemoval {

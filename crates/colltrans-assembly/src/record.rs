@@ -155,7 +155,7 @@ pub fn contacts_json(assembly: &Assembly, matrix: &ContactMatrix, direction: usi
 /// | `rounds` | steps that can be done at the same time |
 /// | `assembly` | the steps in the order of assembly, with those that each needs |
 /// | `last` | the parts from which all others were removed; empty if parts are left |
-/// | `left` | the parts that stay: fixed, or not moved by any direction |
+/// | `left` | the parts that stay and were to be removed: fixed, not moved by any direction, or an interlocked rest |
 /// | `stuck` | the interlocked groups |
 /// | `wanted` | the requested removal, if any |
 pub fn plan_json(bodies: &Bodies, plan: &Plan) -> Value {
@@ -175,7 +175,7 @@ pub fn plan_json(bodies: &Bodies, plan: &Plan) -> Value {
         "rounds": plan.parallel_rounds(),
         "assembly": plan.assembly_sequence().into_iter().map(put).collect::<Vec<_>>(),
         "last": names(&plan.base),
-        "left": names(&plan.remaining),
+        "left": names(plan.parts_left()),
         "stuck": stuck,
     });
     if let Some(wanted) = &plan.selection {
@@ -329,6 +329,7 @@ fn moves_json(moves: &PathSearch) -> Value {
         PathSearch::NotSearched(why) => json!({ "not_asked": why }),
         PathSearch::ConstraintsViolated => json!({ "not_kept": true }),
         PathSearch::Proven { cells } => json!({ "proven": cells }),
+        PathSearch::Enclosed => json!({ "enclosed": true }),
         PathSearch::NotFound { effort, searched } => json!({
             "effort": effort,
             "directions": searched.directions,

@@ -139,7 +139,11 @@ impl Interlocked {
         let sentence = format!("{nothing}{condition}");
         let (heading, evidence) = match self.proof_cells {
             Some(cells) => (
-                if self.overlapping_pairs.is_empty() {
+                if self.path_search == PathSearch::Enclosed {
+                    "stuck: proven for all motions"
+                } else if matches!(self.path_search, PathSearch::Proven { .. }) {
+                    "stuck: proven for all sequences of translations"
+                } else if self.overlapping_pairs.is_empty() {
                     "stuck: proven for each single translation of a group as one"
                 } else {
                     "stuck: proven for each single translation of a group as one, with what overlaps as one"
@@ -200,7 +204,7 @@ impl Interlocked {
         }
         sentences.push(evidence);
         sentences.push(self.path_search.describe());
-        if self.parts.len() > 2 {
+        if self.parts.len() > 2 && self.path_search != PathSearch::Enclosed {
             sentences
                 .push("Motions of several parts at once, each its own way, were not tried.".into());
         }
@@ -268,6 +272,11 @@ impl PathSearch {
         match self {
             Self::NotSearched(why) => {
                 format!("Several moves, one after another, were not searched: {why}.")
+            }
+            Self::Enclosed => {
+                "Nor does any other motion, which is proven: a closed surface encloses what stays inside. This covers \
+                 turns, and parts that move at the same time."
+                    .into()
             }
             Self::ConstraintsViolated => {
                 "The paths of several moves that were found violate constraints on order and directions."

@@ -17,7 +17,7 @@ use colltrans::removal::path::{
 use colltrans::{Placed, Pose, Solid, removal::directions::FreeError};
 use glam::DVec3;
 
-use super::{Leg, PlanOptions};
+use super::{Leg, PlanOptions, enclosure};
 use crate::blocking::BlockingGraph;
 use crate::bodies::Bodies;
 use crate::constraints::Constraints;
@@ -52,6 +52,9 @@ pub enum PathSearch {
         /// Number of cells of displacements in the proof.
         cells: usize,
     },
+    /// It is proven that no motion separates any of the parts from the others: closed surfaces of some enclose the
+    /// others. This covers turns, and several parts that move at the same time.
+    Enclosed,
     /// No path was found with this effort. This does not prove that there is none.
     NotFound {
         /// The [effort](PlanOptions::effort).
@@ -105,6 +108,9 @@ pub(super) fn search_path(
     let left = among.left;
     if let Some(why) = unsupported_reason(bodies, left, options) {
         return Ok(Err(PathSearch::NotSearched(why)));
+    }
+    if options.prove && enclosure::are_enclosed(bodies, left) {
+        return Ok(Err(PathSearch::Enclosed));
     }
     let can_move = |share: &f64| can_any_group_move(bodies, left, matrix, *share);
     let Some(first) = STEP_SHARES.iter().position(can_move) else {

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use crate::common::*;
+use colltrans_assembly::attempts::next_attempts;
 use colltrans_assembly::plan::{Leg, PathSearch, Plan, PlanOptions};
 use colltrans_assembly::roles::{PairFit, Role};
 use colltrans_assembly::{
@@ -449,4 +450,134 @@ fn selected_part_that_stays_locked_in_another_one_is_not_out() {
         assert_eq!(selection.is_complete, !locked, "{plan:?}");
         assert!(!selection.is_minimal || selection.is_complete);
     }
+}
+
+/// Returns a housing around a channel from x = 0 on that turns into a shaft, and a cube that fits into both exactly.
+/// With `turns` of 2, the shaft goes up at once; with 3, the channel turns to y before.
+fn exact_channel(turns: usize, cube: f64) -> Assembly {
+    let housing = if turns == 2 {
+        blocks(
+            "housing",
+            &[
+                [[-1.0, -1.0, -1.0], [3.0, 2.0, 0.0]],
+                [[-1.0, -1.0, 0.0], [3.0, 0.0, 2.0]],
+                [[-1.0, 1.0, 0.0], [3.0, 2.0, 2.0]],
+                [[-1.0, 0.0, 0.0], [0.0, 1.0, 2.0]],
+                [[2.0, 0.0, 0.0], [3.0, 1.0, 2.0]],
+                [[0.0, 0.0, 1.0], [1.0, 1.0, 2.0]],
+            ],
+        )
+    } else {
+        blocks(
+            "housing",
+            &[
+                [[-1.0, -1.0, -1.0], [4.0, 4.0, 0.0]],
+                [[-1.0, -1.0, 0.0], [4.0, 0.0, 2.0]],
+                [[-1.0, 3.0, 0.0], [4.0, 4.0, 2.0]],
+                [[-1.0, 0.0, 0.0], [0.0, 3.0, 2.0]],
+                [[3.0, 0.0, 0.0], [4.0, 3.0, 2.0]],
+                [[0.0, 1.0, 0.0], [2.0, 3.0, 2.0]],
+                [[0.0, 0.0, 1.0], [3.0, 1.0, 2.0]],
+                [[2.0, 1.0, 1.0], [3.0, 2.0, 2.0]],
+            ],
+        )
+    };
+    Assembly::new(vec![blocks("cube", &[[[0.0; 3], [cube; 3]]]), housing]).unwrap()
+}
+
+#[test]
+fn exact_fits_leave_in_several_moves_with_a_tolerance_above_rounding() {
+    for turns in [2, 3] {
+        let plan_with = |cube: f64, tolerance: f64| {
+            let assembly = exact_channel(turns, cube);
+            let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance)).unwrap();
+            let plan = crate::common::planned(&bodies, PlanOptions::default());
+            check_moves(&bodies, &plan);
+            plan
+        };
+        // A leg that ends at a wall passes it by less than the share by which its cast is longer.
+        for tolerance in [1e-10, 1e-9, 1e-6] {
+            let plan = plan_with(1.0, tolerance);
+            assert!(plan.interlocked.is_empty(), "{turns} {tolerance}: {plan:?}");
+            assert_eq!((&plan.steps[0].parts[..], plan.steps[0].path.len()), (&[0][..], turns));
+            let large = plan_with(1.0 + 2.0 * tolerance, tolerance);
+            assert_eq!(large.interlocked.len(), 1, "{large:?}");
+        }
+    }
+}
+
+/// With the default tolerance of files in double precision, rounding leaves no room for proofs. The search ends, by its
+/// counted work, and a tolerance is suggested.
+#[test]
+fn exact_fits_suggest_a_tolerance_for_several_moves() {
+    for turns in [2, 3] {
+        let assembly = exact_channel(turns, 1.0);
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(0.5_f64.powi(44))).unwrap();
+        let found = AnalysisRequest::default().analyse(&bodies, Watch::default()).unwrap();
+        let stuck = &found.plan.interlocked[0];
+        let PathSearch::NotFound { searched, .. } = &stuck.path_search else { panic!("{stuck:?}") };
+        // Each placement needs a test or a cast along six directions.
+        assert!(searched.places < 30_000 && searched.total() < 6_100_000, "{searched:?}");
+        let tried = next_attempts(&found);
+        let tolerance = tried.iter().find_map(|way| way.option.strip_prefix("--tolerance "));
+        let tolerance: f64 = tolerance.expect("a tolerance to try").parse().unwrap();
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance)).unwrap();
+        let plan = crate::common::planned(&bodies, PlanOptions::default());
+        assert!(plan.interlocked.is_empty(), "{plan:?}");
+    }
+}
+
+#[test]
+fn enclosed_parts_are_proven_to_stay() {
+    let walls = [
+        [[-1.0, -1.0, -1.0], [3.0, 3.0, 0.0]],
+        [[-1.0, -1.0, 2.0], [3.0, 3.0, 3.0]],
+        [[-1.0, -1.0, 0.0], [3.0, 0.0, 2.0]],
+        [[-1.0, 2.0, 0.0], [3.0, 3.0, 2.0]],
+        [[-1.0, 0.0, 0.0], [0.0, 2.0, 2.0]],
+        [[2.0, 0.0, 0.0], [3.0, 2.0, 2.0]],
+    ];
+    let shell = |walls: &[[[f64; 3]; 2]]| {
+        // The pieces become one body with a cavity.
+        let hollow = colltrans_testkit::shapes::block(DVec3::splat(-1.0), DVec3::splat(3.0));
+        let cavity = colltrans_testkit::shapes::block(DVec3::ZERO, DVec3::splat(2.0));
+        if walls.is_empty() {
+            let mut vertices = hollow.vertices;
+            let first = vertices.len() as u32;
+            vertices.extend(cavity.vertices);
+            let turned = |face: &Vec<u32>| face.iter().rev().map(|v| v + first).collect::<Vec<_>>();
+            let mut faces = hollow.faces;
+            faces.extend(cavity.faces.iter().map(turned));
+            let piece =
+                Piece { mesh: Mesh::new(vertices, faces), world_from_piece: DAffine3::IDENTITY };
+            return part("shell", &[piece]);
+        }
+        blocks("shell", walls)
+    };
+    let small = |name: &str, low: f64| blocks(name, &[[[low; 3], [low + 0.7; 3]]]);
+    let foot = blocks("foot", &[[[-1.0, -1.0, -3.0], [3.0, 3.0, -1.0]]]);
+    let told = |parts: Vec<Part>| {
+        let assembly = Assembly::new(parts).unwrap();
+        let plan = planned(&assembly, PlanOptions::default());
+        let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+        (record::plan_json(&bodies, &plan), plan)
+    };
+    let (json, plan) = told(vec![small("cube", 0.1), shell(&[]), foot]);
+    assert_eq!((plan.steps.len(), &plan.interlocked[0].parts[..]), (1, &[0, 1][..]));
+    assert_eq!(plan.interlocked[0].path_search, PathSearch::Enclosed);
+    assert_eq!(json["left"], serde_json::json!(["cube", "shell"]));
+    assert_eq!(json["stuck"][0]["moves"], serde_json::json!({ "enclosed": true }));
+    // Two cubes in the cavity, which block each other.
+    let (_, plan) = told(vec![small("a", 0.1), small("b", 1.1), shell(&[])]);
+    assert_eq!(plan.interlocked[0].path_search, PathSearch::Enclosed);
+    // A touching cube below the box, and one that touches the wall from inside.
+    let below = blocks("below", &[[[0.0, 0.0, -2.0], [1.0, 1.0, -1.0]]]);
+    let (_, plan) = told(vec![below, shell(&[])]);
+    assert!(plan.interlocked.is_empty(), "{plan:?}");
+    let (_, plan) = told(vec![small("cube", 0.0), shell(&[])]);
+    assert_eq!(plan.interlocked[0].path_search, PathSearch::Enclosed);
+    // A box of walls that has a window is not closed.
+    let (json, plan) = told(vec![small("cube", 0.1), shell(&walls[..5])]);
+    assert!(plan.interlocked.is_empty(), "{plan:?}");
+    assert_eq!(json["left"], serde_json::json!([]));
 }

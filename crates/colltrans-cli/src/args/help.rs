@@ -534,7 +534,7 @@ const JSON_ASSEMBLY: &str = r#"Answer of assembly:
    "assembly": [{"step", "after"}], "seconds": [...], "left": [...],
    "stuck": [{"parts", "because", "directions", "proof": {"proven": cells} or {"asked": directions},
      "moves": {"effort", "directions", "places", "complete"} or {"proven": cells} or
-     {"not_asked": why}, "holds"}], "try": [{"option", "why"}], "maps": [...], "free": [...] (as `directions`, with "parts")}
+     {"enclosed": true} or {"not_asked": why}, "holds"}], "try": [{"option", "why"}], "maps": [...], "free": [...] (as `directions`, with "parts")}
   Directions have length 1. `distance` is safe to move by, proven. A step with "within" takes apart
   the group of that step, counted from 0. "path" lists its moves; the last one removes its parts.
   Parts that made room before go "back"."#;

@@ -235,7 +235,7 @@ fn audit_text(
     limit: Option<usize>,
 ) -> String {
     let assembly = bodies.assembly();
-    let mut text = head_text(bodies);
+    let mut text = head_text(bodies, true);
     let contact = if options.allow_contact { ", contacts permitted" } else { "" };
     let _ = writeln!(text, "clearance: {}{contact}", length_down(options.within));
     for level in options.levels() {

@@ -22,6 +22,9 @@ pub(crate) struct AssemblyArguments {
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+    /// List each defect and each overlap of the parts, instead of one line for each kind
+    #[arg(long, hide_short_help = true)]
+    pub(crate) notes: bool,
     /// Permitted overlap: chord errors of curved fits, press fits [default: precision of the files]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) tolerance: Option<f64>,

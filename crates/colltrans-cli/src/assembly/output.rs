@@ -47,7 +47,7 @@ pub(super) fn write(
     if arguments.json {
         return print_json(&format!("{json}\n"));
     }
-    let mut text = summary_text(findings);
+    let mut text = summary_text(findings, arguments.notes);
     for removal in removals {
         removal.push_text(&mut text);
     }
@@ -139,8 +139,39 @@ fn proof_names<'a>(parts: impl IntoIterator<Item = &'a String>) -> Vec<String> {
     parts.into_iter().map(|name| format!("free-{}.json", names.unique_name(name))).collect()
 }
 
-/// Returns the first lines of an answer: the number of parts, the tolerance, and the defects of parts.
-pub(crate) fn head_text(bodies: &Bodies) -> String {
+/// Returns the kind of a note: its text before the first detail, without numbers.
+fn note_kind(text: &str) -> String {
+    let end = text.find(['(', ':', ';']).unwrap_or(text.len());
+    let words = text[..end].split_whitespace();
+    words.filter(|word| word.parse::<f64>().is_err()).collect::<Vec<_>>().join(" ")
+}
+
+/// Appends notes on parts, each with the name of its part. Unless `all` are wanted, notes of one kind on several parts
+/// are one line with their names.
+fn push_notes(text: &mut String, notes: &[(&str, String)], all: bool) {
+    let kinds: Vec<String> = notes.iter().map(|(_, note)| note_kind(note)).collect();
+    for (k, (name, note)) in notes.iter().enumerate() {
+        let same: Vec<&str> = (0..notes.len())
+            .filter(|&other| kinds[other] == kinds[k])
+            .map(|other| notes[other].0)
+            .collect();
+        if all || same.len() <= MAX_EQUAL_NOTES {
+            let _ = writeln!(text, "  {}: {}", escape_line(name), escape_line(note));
+        } else if !kinds[..k].contains(&kinds[k]) {
+            let names = escape_line(name_list(&same));
+            let count = same.len();
+            let _ = writeln!(
+                text,
+                "  {count} x {}: {names} (--notes lists each)",
+                escape_line(&kinds[k])
+            );
+        }
+    }
+}
+
+/// Returns the first lines of an answer: the number of parts, the tolerance, and the defects of parts: one line for
+/// each kind, unless `all` are wanted.
+pub(crate) fn head_text(bodies: &Bodies, all: bool) -> String {
     let parts = bodies.assembly().parts();
     let fit = match bodies.fit() {
         Fit::Tolerance(length) => format!("tolerance {}", length_up(length)),
@@ -151,11 +182,12 @@ pub(crate) fn head_text(bodies: &Bodies) -> String {
         Fit::MinGap(length) => format!("minimum gap {}", length_down(length)),
     };
     let mut text = format!("{}, {fit}\n", count_text(parts.len(), "part", "parts"));
-    for (k, p) in parts.iter().enumerate() {
-        for defect in p.defects().iter().chain(&bodies.shrink_defects(k)) {
-            let _ = writeln!(text, "  {}: {}", escape_line(p.name()), escape_line(defect));
-        }
+    let mut notes = Vec::new();
+    for (k, part) in parts.iter().enumerate() {
+        let defects = part.defects().iter().cloned().chain(bodies.shrink_defects(k));
+        notes.extend(defects.map(|defect| (part.name(), defect)));
     }
+    push_notes(&mut text, &notes, all);
     text
 }
 
@@ -187,15 +219,15 @@ pub(crate) fn finding_text(assembly: &Assembly, pair: &AuditedPair) -> String {
     text
 }
 
-/// Returns the answer as text.
-fn summary_text(findings: &Analysis) -> String {
+/// Returns the answer as text. Unless `all` notes are wanted, those of one kind are one line.
+fn summary_text(findings: &Analysis, all: bool) -> String {
     let assembly = findings.bodies.assembly();
     let names = |parts: &[usize]| escape_line(name_list(&assembly.part_names(parts)));
-    let mut text = head_text(findings.bodies);
+    let mut text = head_text(findings.bodies, all);
     for hint in find_hints(findings.bodies, &findings.start) {
         let _ = writeln!(text, "  {}", escape_line(hint.description));
     }
-    push_overlaps(&mut text, findings);
+    push_overlaps(&mut text, findings, all);
     if !findings.plan.steps.is_empty() {
         text.push_str("plan\n");
     }
@@ -272,6 +304,10 @@ fn removed_names(findings: &Analysis, stage: &Range<usize>) -> String {
 
 /// Number of names to which a longer list is shortened.
 const MAX_NAMES: usize = 12;
+/// Maximum number of notes of one kind that are listed one by one.
+const MAX_EQUAL_NOTES: usize = 3;
+/// Number of overlaps at the start that are listed.
+const MAX_OVERLAPS: usize = 12;
 /// Maximum number of overlaps at the start whose depth and volume are computed.
 const MOST_EXAMINED: usize = 64;
 
@@ -353,12 +389,29 @@ fn push_stage(text: &mut String, findings: &Analysis, stage: &Range<usize>) {
     surfaces.sort_unstable();
     surfaces.dedup();
     if !surfaces.is_empty() {
-        let _ = writeln!(text, "     rests on an open surface: {}", names(&surfaces));
+        let surfaces = names(&surfaces);
+        let _ = writeln!(
+            text,
+            "     not proven, because open surfaces have no known inside: {surfaces}"
+        );
+    }
+    let joined = |pair: &[usize; 2]| {
+        steps.iter().any(|step| pair.iter().all(|part| step.parts.contains(part)))
+    };
+    let overlaps = findings.bodies.overlapping_pairs();
+    if let Some(first) = overlaps.iter().find(|pair| joined(pair)) {
+        let more = match overlaps.iter().filter(|pair| joined(pair)).count() {
+            1 => String::new(),
+            count => format!(" and {}", count_text(count - 1, "more pair", "more pairs")),
+        };
+        let first = names(first);
+        let _ =
+            writeln!(text, "     not proven, because overlapping parts move as one: {first}{more}");
     }
 }
 
-/// Appends overlaps at the start, and suggestions.
-fn push_overlaps(text: &mut String, findings: &Analysis) {
+/// Appends overlaps at the start, and suggestions: the first overlaps, unless `all` are wanted.
+fn push_overlaps(text: &mut String, findings: &Analysis, all: bool) {
     let remaining: Vec<_> = findings.start.remaining().collect();
     if !remaining.is_empty() {
         text.push_str(match findings.bodies.fit() {
@@ -366,7 +419,10 @@ fn push_overlaps(text: &mut String, findings: &Analysis) {
             _ => "overlapping with this tolerance\n",
         });
     }
-    for (k, o) in remaining.iter().enumerate() {
+    // One more line than the number of those that are left out would be as long.
+    let listed =
+        if all || remaining.len() <= MAX_OVERLAPS + 1 { remaining.len() } else { MAX_OVERLAPS };
+    for (k, o) in remaining[..listed].iter().enumerate() {
         let [a, b] = o.parts.map(|k| escape_line(findings.bodies.assembly().parts()[k].name()));
         let depth = match (o.depth, findings.bodies.fit()) {
             (None, _) => " by more than their size".into(),
@@ -384,6 +440,10 @@ fn push_overlaps(text: &mut String, findings: &Analysis) {
             let _ = write!(text, ": {finding}");
         }
         text.push('\n');
+    }
+    if listed < remaining.len() {
+        let more = remaining.len() - listed;
+        let _ = writeln!(text, "  and {more} more pairs (--notes lists each)");
     }
     if remaining.is_empty() && !findings.suggestions.is_empty() {
         text.push_str("possible reasons\n");

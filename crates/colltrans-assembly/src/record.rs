@@ -182,6 +182,7 @@ pub fn plan_json(bodies: &Bodies, plan: &Plan) -> Value {
         object["wanted"] = json!({
             "parts": names(&wanted.parts),
             "others": names(&wanted.others),
+            "fasteners": names(&wanted.fasteners),
             "least": wanted.is_minimal,
             "out": wanted.is_complete,
         });

@@ -7,7 +7,7 @@ use super::{Leg, Plan};
 use crate::bodies::Bodies;
 use crate::constraints::Constraints;
 use crate::error::AssemblyError;
-use crate::fasteners::{Fasteners, Unscrewing};
+use crate::fasteners::{FastenerKind, Fasteners, Unscrewing};
 use crate::identical::first_identical_parts;
 
 /// Properties of the parts that affect the order of a plan.
@@ -25,6 +25,21 @@ impl KnownParts {
         let pairs = fasteners.holds().iter().flat_map(|hold| hold.order_pairs(&fasteners));
         let preferred = bodies.assembly().constraints().with_preferred(&pairs.collect::<Vec<_>>());
         Ok(Self { likes: first_identical_parts(bodies.assembly()), fasteners, preferred })
+    }
+
+    /// Returns the screws that hold some parts, in increasing order: none of these parts and none of the base.
+    pub(super) fn screws_of(&self, parts: &[usize], is_base: &[bool]) -> Vec<usize> {
+        let holds = self.fasteners.holds().iter();
+        let pairs = holds.flat_map(|hold| hold.order_pairs(&self.fasteners));
+        let is_screw = |&[first, held]: &[usize; 2]| {
+            let kind = self.fasteners.get(first).map(|fastener| fastener.kind);
+            kind == Some(FastenerKind::Screw) && parts.contains(&held)
+        };
+        let mut screws: Vec<usize> = pairs.filter(is_screw).map(|[first, _]| first).collect();
+        screws.retain(|screw| !parts.contains(screw) && !is_base[*screw]);
+        screws.sort_unstable();
+        screws.dedup();
+        screws
     }
 
     /// Returns a plan with these properties.

@@ -455,7 +455,7 @@ impl<'a> Order<'a> {
 /// Parts are compared by the volume of their boxes, then the area of these, their own volume, and their height (the
 /// lower part wins). A part for which `moves` holds is never the base. A part that must leave before others is the
 /// base only if all are such parts.
-fn base_parts(
+pub(super) fn base_parts(
     bodies: &Bodies,
     present: &[bool],
     up: DVec3,

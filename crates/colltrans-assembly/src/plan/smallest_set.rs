@@ -13,7 +13,6 @@ use glam::DVec3;
 use crate::bodies::Bodies;
 use crate::constraints::RigidUnit;
 use crate::matrix::ContactMatrix;
-use crate::part::Part;
 
 /// Maximum number of sets that are tried, and of 64-bit words that they take together.
 const MAX_SETS: usize = 20_000;
@@ -29,17 +28,18 @@ pub(super) struct SufficientSet {
 /// Returns a smallest set that contains the selected parts and suffices to take them out along the directions of a
 /// matrix.
 ///
-/// Returns `None` if no set was found to suffice, or if all parts are selected. After [`MAX_SETS`] sets, or
+/// The set contains no part of the base. Returns `None` if no set was found to suffice, or if all parts are selected. After [`MAX_SETS`] sets, or
 /// [`MAX_WORDS`] words of sets, the search becomes greedy, and `least` is false.
 pub(super) fn smallest_sufficient_set(
     bodies: &Bodies,
     matrix: &ContactMatrix,
     wanted: &[usize],
+    is_base: &[bool],
 ) -> Option<SufficientSet> {
     if wanted.len() >= bodies.len() {
         return None;
     }
-    let search = SubsetSearch::new(bodies, matrix, wanted);
+    let search = SubsetSearch::new(bodies, matrix, wanted, is_base);
     let first = PartSet::from_parts(wanted, bodies.len());
     let mut queue = BinaryHeap::from([Reverse((first.len(), first.clone()))]);
     let mut seen = HashSet::from([first]);
@@ -118,11 +118,17 @@ struct SubsetSearch<'a> {
     blockers: Vec<Vec<Option<Vec<usize>>>>,
     /// Parts that leave as one body.
     units: &'a [RigidUnit],
+    /// The base, which does not move.
     fixed: Vec<bool>,
 }
 
 impl<'a> SubsetSearch<'a> {
-    fn new(bodies: &Bodies<'a>, matrix: &ContactMatrix, wanted: &'a [usize]) -> Self {
+    fn new(
+        bodies: &Bodies<'a>,
+        matrix: &ContactMatrix,
+        wanted: &'a [usize],
+        is_base: &[bool],
+    ) -> Self {
         let (count, assembly) = (bodies.len(), bodies.assembly());
         let constraints = assembly.constraints();
         let along = |(k, d): (usize, &DVec3)| {
@@ -138,8 +144,7 @@ impl<'a> SubsetSearch<'a> {
             met
         };
         let blockers = matrix.directions().iter().enumerate().map(along).collect();
-        let fixed = assembly.parts().iter().map(Part::is_fixed).collect();
-        Self { wanted, blockers, units: constraints.units(), fixed }
+        Self { wanted, blockers, units: constraints.units(), fixed: is_base.to_vec() }
     }
 
     /// Removes the removable subsets of a set repeatedly, and checks whether the selected parts leave.

@@ -293,20 +293,35 @@ fn smallest_removal_set_equals_exhaustive_search() {
             with_demands(assembly, &mut random)
         };
         let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
-        let judge = Judge::new(&bodies, demands);
         let wanted: Vec<usize> = match random.index(3) {
             0 => vec![1, bodies.len() - 1],
             _ => vec![random.index(bodies.len())],
         };
         let plan = remove(&bodies, &matrix(&bodies), &[], &wanted, options(), Watch::default());
-        let least = judge.least(bits(&wanted));
         if wanted.iter().any(|&part| assembly.parts()[part].is_fixed()) {
+            let least = Judge::new(&bodies, demands).least(bits(&wanted));
             assert!(matches!(plan, Err(AssemblyError::FixedAndRemoved { .. })) && least.is_none());
             held += 1;
             continue;
         }
         let plan = plan.unwrap();
         let found = plan.selection.as_ref().unwrap();
+        // The base does not move: the fixed parts, or else the largest part that need not leave.
+        let base = bits(&found.base);
+        if demands.fixed != 0 {
+            assert_eq!(base, demands.fixed);
+        } else {
+            assert!(base.count_ones() == 1 && base & bits(&wanted) == 0);
+            let volume = |part: usize| {
+                assembly.parts()[part].solid().bounds().side_lengths().element_product()
+            };
+            let is_first = |part: usize| demands.before.iter().any(|pair| pair[0] == part);
+            let other = |part: &usize| !wanted.contains(part) && !is_first(*part);
+            let largest = (0..bodies.len()).filter(other).map(volume).fold(0.0, f64::max);
+            assert!(volume(found.base[0]) >= largest * (1.0 - 1e-6), "round {round}: {found:?}");
+        }
+        let judge = Judge::new(&bodies, Demands { fixed: base, ..demands });
+        let least = judge.least(bits(&wanted));
         // The judge counts a part as out that leaves with another one, even if it stays locked in it.
         let is_wanted = |part: &&usize| wanted.contains(part);
         let is_locked = plan.interlocked.iter().any(|group| {

@@ -6,7 +6,9 @@ use std::f64::consts::TAU;
 use colltrans_assembly::fasteners::Fasteners;
 use colltrans_assembly::plan::{HandlingTimes, Plan, PlanOptions};
 use colltrans_assembly::roles::{PairFit, Role};
-use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Part, Piece, record};
+use colltrans_assembly::{
+    AnalysisRequest, Assembly, AssemblyError, Bodies, Fit, Part, Piece, Watch, record,
+};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::machines::flange;
 use glam::{DAffine3, DVec2};
@@ -228,4 +230,38 @@ fn order_with_fasteners_is_deterministic_on_any_number_of_threads() {
         })
         .to_vec();
     assert_eq!(plans[0], plans[1]);
+}
+
+#[test]
+fn screws_of_selected_parts_are_removed_first() {
+    // The base could be pulled off the screw, down.
+    let through = [[40.0, -10.0], [40.0, 0.0], [4.0, 0.0], [4.0, -10.0]];
+    let parts = |name: &str| {
+        vec![
+            part("anchor", &[crate::common::cuboid([-200.0, 60.0, -50.0], [200.0, 100.0, 50.0])]),
+            part("base", &[revolved(&through, DVec2::ZERO, true)]),
+            part("lid", &[disc(4.5, 30.0, [0.0, 6.0])]),
+            part(name, &[screw(-12.0, 6.0)]),
+            part("post", &[crate::common::cuboid([60.0, -5.0, -50.0], [70.0, 5.0, 50.0])]),
+        ]
+    };
+    for (name, order) in [("screw", vec![vec!["screw"], vec!["base"]]), ("rod", vec![vec!["base"]])]
+    {
+        let assembly = Assembly::new(parts(name)).unwrap();
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+        let question = AnalysisRequest::default().with_selected(vec![1]);
+        let plan = question.analyse(&bodies, Watch::default()).unwrap().plan;
+        assert_eq!(removed(&assembly, &plan), order);
+        let wanted = plan.selection.as_ref().unwrap();
+        let screws = &[3][..order.len() - 1];
+        assert_eq!((&wanted.fasteners[..], &wanted.others[..]), (screws, screws));
+        assert_eq!((&wanted.base[..], wanted.is_complete), (&[0][..], true));
+    }
+    // A screw that cannot be removed does not keep the part.
+    let held = Assembly::new(parts("screw")).unwrap().with_fixed(&["screw", "anchor"]).unwrap();
+    let bodies = Bodies::new(&held, Fit::Tolerance(1e-6)).unwrap();
+    let question = AnalysisRequest::default().with_selected(vec![1]);
+    let plan = question.analyse(&bodies, Watch::default()).unwrap().plan;
+    assert_eq!(removed(&held, &plan), [["base"]]);
+    assert!(plan.selection.unwrap().fasteners.is_empty());
 }

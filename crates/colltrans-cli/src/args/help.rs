@@ -530,7 +530,7 @@ const JSON_ASSEMBLY: &str = r#"Answer of assembly:
        "aside", "words", "proof": {"tolerance", "pairs"} or "not_proven"}}], "back", "within",
      "ignored", "passed", "surfaces", "subassembly",
      "unscrew": {"length", "turns", "pitch", "standard", "words"}}],
-   "wanted" (of --remove): {"parts", "others", "least", "out"}, "rounds": [...],
+   "wanted" (of --remove): {"parts", "others", "fasteners", "least", "out"}, "rounds": [...],
    "assembly": [{"step", "after"}], "seconds": [...], "left": [...],
    "stuck": [{"parts", "because", "directions", "proof": {"proven": cells} or {"asked": directions},
      "moves": {"effort", "directions", "places", "complete"} or {"proven": cells} or

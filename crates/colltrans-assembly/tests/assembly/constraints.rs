@@ -311,7 +311,7 @@ fn smallest_removal_set_equals_exhaustive_search() {
         if demands.fixed != 0 {
             assert_eq!(base, demands.fixed);
         } else {
-            assert!(base.count_ones() == 1 && base & bits(&wanted) == 0);
+            assert!(base.is_power_of_two() && base & bits(&wanted) == 0);
             let volume = |part: usize| {
                 assembly.parts()[part].solid().bounds().side_lengths().element_product()
             };

@@ -7,8 +7,8 @@
 //!   `g`. Lines along the sides of all zones divide the projection of `f` into convex pieces. On a piece outside of all
 //!   zones no facet is near `f`, so that the exact winding numbers at one point decide the piece.
 //! - The area of the zones, and of a narrow frame of each facet, counts as undecided. Where facets cross, a zone is some
-//!   noises wide. Facets in one plane would be undecided as a whole. Therefore a second sum displaces each body of both
-//!   solids by a small translation of its own, and adds the volume through which the facets move to the error.
+//!   noises wide. Facets in one plane would be undecided as a whole. Therefore further sums displace each body of both
+//!   solids by a small translation of its own, and add the volume through which the facets move to the error.
 //!
 //! Proof and rounding errors: `docs/theory/depth-of-solids.md`.
 
@@ -39,8 +39,9 @@ const PATH: f64 = 8.0;
 const HEIGHT_ERROR: f64 = 16.0;
 /// Component of a unit normal up to which a facet counts as parallel to an axis in the choice of the axis.
 const UPRIGHT: f64 = 1e-9;
-/// Factor of the displacement of a body in the second sum, in noises.
-const DISPLACEMENT: f64 = 1_048_576.0;
+/// Factors of the displacements of bodies in the sums over facets, in noises. Long ones separate more facets in one plane,
+/// and short ones move facets through less volume, which counts for thin common parts.
+pub(super) const DISPLACEMENTS: [f64; 3] = [0.0, 1_048_576.0, 16_384.0];
 /// Ratios of the components of displacements. Small rational numbers would leave them orthogonal to the normals of
 /// common facets.
 const RATIOS: DVec3 = DVec3::new(1.0, 0.917_316_4, 0.834_672_9);
@@ -229,17 +230,17 @@ struct Sum {
 
 impl Sum {
     /// Collects the facets of both bodies in and above a room, in a frame whose third axis is `axis`.
-    fn new(scene: &PairFrame, room: &Aabb, axis: usize, is_displaced: bool, budget: u64) -> Self {
+    fn new(scene: &PairFrame, room: &Aabb, axis: usize, displacement: f64, budget: u64) -> Self {
         // Covers components that are set to 0.
         let noise = scene.noise.max(MIN_MAGNITUDE);
-        let shift = if is_displaced { DISPLACEMENT * noise } else { 0.0 };
+        let shift = displacement * noise;
         let room = room.expanded(2.0 * shift + 16.0 * noise);
         let mut column = room.expanded(2.0 * shift + 16.0 * noise);
         column.high[axis] = f64::INFINITY;
         let (mut facets, mut error, mut bodies) = (Vec::new(), 0.0, 0);
         for is_fixed in [false, true] {
             let side = scene.side(!is_fixed);
-            let numbers = if is_displaced { side.solid.body_numbers() } else { &[] };
+            let numbers = if shift > 0.0 { side.solid.body_numbers() } else { &[] };
             for (triangle, corners) in near_triangles(scene, side, &column) {
                 let by = numbers.get(triangle).map_or(DVec3::ZERO, |number| {
                     let place = [2, 3, 5].map(|base| radical_inverse(bodies + number + 1, base));
@@ -521,15 +522,15 @@ fn best_axis(scene: &PairFrame, room: &Aabb) -> usize {
 }
 
 /// Computes the volume of the common part of two bodies in a box; `None` if that takes more than `budget` boxes and
-/// pieces. If `is_displaced`, the bodies of both solids are displaced.
+/// pieces. The bodies of both solids are displaced by `displacement` noises at most along each axis.
 pub(super) fn common_volume(
     scene: &PairFrame,
     room: &Aabb,
-    is_displaced: bool,
+    displacement: f64,
     budget: u64,
 ) -> Option<CommonVolume> {
     let axis = best_axis(scene, room);
-    let mut sum = Sum::new(scene, room, axis, is_displaced, budget);
+    let mut sum = Sum::new(scene, room, axis, displacement, budget);
     for index in 0..sum.facets.len() {
         sum.add_facet(index);
         if sum.budget == 0 {

@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use super::arrangement::common_volume;
+use super::arrangement::{DISPLACEMENTS, common_volume};
 use super::cells::{CommonCells, box_cells, common_box, common_cells};
 use super::placed_solids;
 use super::prepared::PreparedPair;
@@ -206,8 +206,8 @@ fn part_by_facets(scene: &PairFrame, options: VolumeOptions) -> CommonCells {
     let max_work = WORK_PER_CELL * u64::from(max_cells);
     let (mut volume, mut point, mut is_accurate) = ([0.0, f64::INFINITY], None, false);
     // Facets in one plane are undecided unless the bodies are displaced.
-    for is_displaced in [false, true] {
-        let Some(sum) = common_volume(scene, &room, is_displaced, max_work) else { break };
+    for displacement in DISPLACEMENTS {
+        let Some(sum) = common_volume(scene, &room, displacement, max_work) else { break };
         volume = [volume[0].max(sum.bounds[0]), volume[1].min(sum.bounds[1])];
         point = point.or(sum.point);
         is_accurate = volume[1] - volume[0] <= accuracy * volume[0];

@@ -931,6 +931,26 @@ fn volumes_of_pieces_that_overlap_and_touch_are_close() {
 }
 
 #[test]
+fn volume_of_crossed_thin_plates_of_equal_pieces_is_that_of_single_ones() {
+    let plate = cuboid([-1.0, -0.7, -0.001], [1.0, 0.7, 0.001]);
+    let double = Solid::from_pieces([&plate, &plate]).expect("two pieces");
+    for seed in 0..cases(8) {
+        let mut random = Random::new(seed);
+        let poses =
+            [0, 1].map(|_| Pose::new(random.rotation(), random.vector() * 0.2).expect("a pose"));
+        let of = |body: &Solid| {
+            common(&Pair::new(body.at(poses[0]), body.at(poses[1])).expect("a pair"))
+        };
+        let (single, double) = (of(&plate), of(&double));
+        let close =
+            |found: &CommonPart| found.volume[1] - found.volume[0] <= 0.01 * found.volume[0];
+        assert!(close(&single) && close(&double), "{seed}: {single:?} {double:?}");
+        let [one, two] = [single.volume, double.volume];
+        assert!(one[0] <= two[1] && two[0] <= one[1], "{seed}: {single:?} {double:?}");
+    }
+}
+
+#[test]
 fn volume_of_a_rotated_cube_with_tiny_coordinates_is_bounded() {
     // A corner of the rotated cube has a component below the smallest magnitude, which is set to 0.
     let s = 2.0_f64.powi(-199);

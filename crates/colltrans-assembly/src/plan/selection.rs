@@ -272,6 +272,7 @@ impl SelectedRemoval {
         };
         let screws = match self.fasteners.len() {
             0 => String::new(),
+            count if count == self.others.len() => ", screwed out first".to_owned(),
             _ => format!(", of which {} are screwed out first", names(&self.fasteners)),
         };
         format!("{wanted}: {others} ({}){screws}; {least}", names(&self.others))

@@ -4,8 +4,6 @@
 #[cfg(feature = "json")]
 #[doc(inline)]
 pub use colltrans_proof::SolidStatement;
-#[doc(hidden)]
-pub use colltrans_solid::body::ray_crossing;
 #[doc(inline)]
 pub use colltrans_solid::proof::{
     Apart, Claim, CommonNode, CommonPartCertificate, CommonPartError, Cover, DepthCertificate,

@@ -28,8 +28,8 @@ pub(super) struct SufficientSet {
 /// Returns a smallest set that contains the selected parts and suffices to take them out along the directions of a
 /// matrix.
 ///
-/// The set contains no part of the base. Returns `None` if no set was found to suffice, or if all parts are selected. After [`MAX_SETS`] sets, or
-/// [`MAX_WORDS`] words of sets, the search becomes greedy, and `least` is false.
+/// The set contains no part of the base. Returns `None` if no set was found to suffice, or if all parts are selected.
+/// After [`MAX_SETS`] sets, or [`MAX_WORDS`] words of sets, the search becomes greedy, and `least` is false.
 pub(super) fn smallest_sufficient_set(
     bodies: &Bodies,
     matrix: &ContactMatrix,

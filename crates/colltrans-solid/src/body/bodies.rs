@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::edges;
 use super::shells::{self, MAX_TRIED_TRIANGLES, lies_on_triangle, ray_crossing};
 use super::{Solid, SolidError};
+use colltrans_convex::body::Aabb;
 
 impl Solid {
     /// Builds each piece of a union as a solid of its own. A body that is not a union is its only piece.
@@ -91,7 +92,7 @@ impl Solid {
     /// The tested vertex lies on no other shell, if one of the first [`MAX_TRIED_TRIANGLES`] triangles has such a
     /// vertex, because shells may touch.
     fn enclosing_shell(&self, cavity: usize, shell_of: &[u32], volumes: &[f64]) -> usize {
-        let corners = |t: usize| self.triangles[t].map(|v| self.vertices[v as usize]);
+        let corners = |t: usize| self.triangle_corners(t as u32);
         let first = self.spans[cavity].triangle as usize;
         let others = (0..shell_of.len()).filter(|&t| t != first && shell_of[t] as usize == cavity);
         let points = || std::iter::once(first).chain(others.clone()).flat_map(corners);
@@ -103,7 +104,23 @@ impl Solid {
         let [on_first, ..] = corners(first);
         let p = points().take(3 * MAX_TRIED_TRIANGLES).find(is_off).unwrap_or(on_first);
         let piece = self.piece_of(first);
-        let mut windings: BTreeMap<usize, i32> = BTreeMap::new();
+        let windings = self.shell_windings(p, shell_of, |t| self.piece_of(t) == piece);
+        let around = windings.into_iter().filter(|&(shell, winding)| {
+            winding != 0 && volumes[shell] > 0.0 && self.is_shell_closed(shell as u32)
+        });
+        let smallest = around.min_by(|(a, _), (b, _)| volumes[*a].total_cmp(&volumes[*b]));
+        smallest.map_or(cavity, |(shell, _)| shell)
+    }
+
+    /// Computes the winding numbers of shells around a point, of those that a ray from it meets, with the triangles for
+    /// which `counts` holds.
+    fn shell_windings(
+        &self,
+        p: DVec3,
+        shell_of: &[u32],
+        counts: impl Fn(usize) -> bool,
+    ) -> BTreeMap<usize, i32> {
+        let mut windings = BTreeMap::new();
         let mut open = vec![0];
         while let Some(at) = open.pop() {
             let node = &self.nodes[at];
@@ -116,15 +133,35 @@ impl Solid {
                 open.extend([at + node.child_offset as usize, at + node.child_offset as usize + 1]);
                 continue;
             }
-            for t in node.facets().filter(|&t| self.piece_of(t) == piece) {
-                *windings.entry(shell_of[t] as usize).or_default() += ray_crossing(p, corners(t));
+            for t in node.facets().filter(|&t| counts(t)) {
+                *windings.entry(shell_of[t] as usize).or_default() +=
+                    ray_crossing(p, self.triangle_corners(t as u32));
             }
         }
-        let around = windings.into_iter().filter(|&(shell, winding)| {
-            winding != 0 && volumes[shell] > 0.0 && self.is_shell_closed(shell as u32)
-        });
-        let smallest = around.min_by(|(a, _), (b, _)| volumes[*a].total_cmp(&volumes[*b]));
-        smallest.map_or(cavity, |(shell, _)| shell)
+        windings
+    }
+
+    /// Checks whether a closed shell winds around one of some points, and has a distance of more than `margin` from it.
+    #[doc(hidden)]
+    pub fn encloses_any(&self, points: impl IntoIterator<Item = DVec3>, margin: f64) -> bool {
+        let shell_of = edges::shell_numbers(&self.neighbours);
+        let is_beyond = |t: usize, p: DVec3| {
+            let [a, b, c] = self.triangle_corners(t as u32);
+            let near = Aabb::from_triangle([a, b, c]).expanded(margin);
+            let normal = (b - a).cross(c - a);
+            !near.contains_box(&Aabb { low: p, high: p })
+                || normal.dot(p - a).abs() > margin * normal.length()
+        };
+        points.into_iter().any(|p| {
+            let windings = self.shell_windings(p, &shell_of, |_| true);
+            windings.into_iter().any(|(shell, winding)| {
+                winding != 0
+                    && self.is_shell_closed(shell as u32)
+                    && (0..shell_of.len())
+                        .filter(|&t| shell_of[t] as usize == shell)
+                        .all(|t| is_beyond(t, p))
+            })
+        })
     }
 }
 

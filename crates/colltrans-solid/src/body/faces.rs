@@ -173,7 +173,8 @@ impl Solid {
         self.faces.get_or_init(|| Box::new(Faces::new(self)))
     }
 
-    fn triangle_corners(&self, triangle: u32) -> [DVec3; 3] {
+    /// Returns the corners of a triangle.
+    pub(super) fn triangle_corners(&self, triangle: u32) -> [DVec3; 3] {
         self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
     }
 

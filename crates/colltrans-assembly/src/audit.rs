@@ -499,6 +499,7 @@ fn pair_finding(
         Some(Overlap::Facets(..)) => crosses_sheet && !separates_within(bodies, parts, found),
         place => place.is_some(),
     };
+    let surface_distance = || surfaces.map_or_else(|| pair.surface_distance(), Ok);
     if !may_cross && surfaces.as_ref().is_none_or(may_interfere) {
         let depth = pair.depth()?;
         // Open surfaces have no depth.
@@ -509,13 +510,20 @@ fn pair_finding(
                 Relation::FixedContained => Some(1),
                 _ => None,
             };
-            let place = common.point.map_or_else(|| common_point(&pair, inner), Ok)?;
+            // A point of both bodies: of the surface of the inner one, or else of both surfaces.
+            let on_surface = || {
+                surface_distance().map(|found| match inner {
+                    Some(1) => found.on_fixed,
+                    _ => found.on_moving,
+                })
+            };
+            let place = common.point.map_or_else(on_surface, Ok)?;
             let least_tolerance = least_tolerance();
             let found = Interference { depth, common, least_tolerance, place };
             let interference = Box::new(found);
             match (inner, common.relation) {
                 (Some(side), _) => {
-                    let wall = pair.surface_distance()?.into();
+                    let wall = surface_distance()?.into();
                     return Ok(PairFinding::Contained { inner: parts[side], wall, interference });
                 }
                 // Open surfaces nearer than a minimum gap overlap without a common point of their interiors.
@@ -524,7 +532,7 @@ fn pair_finding(
             }
         }
     }
-    let found = surfaces.map_or_else(|| pair.surface_distance(), Ok)?;
+    let found = surface_distance()?;
     let touches = found.place.is_some() || found.lower <= tolerance;
     let nearest = found.into();
     Ok(if touches { PairFinding::Touching(nearest) } else { PairFinding::Apart(nearest) })
@@ -545,10 +553,4 @@ fn separates_within(bodies: &Bodies, parts: [usize; 2], found: &SurfaceDistance)
             .iter()
             .any(|by| !bodies.overlaps_displaced(parts[0], way * *by, parts[1]))
     })
-}
-
-/// Returns a point of two bodies: of the surface of the inner one, or else of both surfaces.
-fn common_point(pair: &PreparedPair, inner: Option<usize>) -> Result<DVec3, QueryError> {
-    let found = pair.surface_distance()?;
-    Ok(if inner == Some(1) { found.on_fixed } else { found.on_moving })
 }

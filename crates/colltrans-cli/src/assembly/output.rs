@@ -1,5 +1,6 @@
 //! Prints the answer of `assembly`, and writes the files of `-o`.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -150,22 +151,21 @@ fn note_kind(text: &str) -> String {
 /// are one line with their names.
 fn push_notes(text: &mut String, notes: &[(&str, String)], all: bool) {
     let kinds: Vec<String> = notes.iter().map(|(_, note)| note_kind(note)).collect();
-    for (k, (name, note)) in notes.iter().enumerate() {
-        let same: Vec<&str> = (0..notes.len())
-            .filter(|&other| kinds[other] == kinds[k])
-            .map(|other| notes[other].0)
-            .collect();
+    let mut of_kind = BTreeMap::<&str, Vec<&str>>::new();
+    for (kind, (name, _)) in kinds.iter().zip(notes) {
+        of_kind.entry(kind).or_default().push(name);
+    }
+    for (kind, (name, note)) in kinds.iter().zip(notes) {
+        let Some(same) = of_kind.get(kind.as_str()) else { continue };
         if all || same.len() <= MAX_EQUAL_NOTES {
             let _ = writeln!(text, "  {}: {}", escape_line(name), escape_line(note));
-        } else if !kinds[..k].contains(&kinds[k]) {
-            let names = escape_line(name_list(&same));
-            let count = same.len();
-            let _ = writeln!(
-                text,
-                "  {count} x {}: {names} (--notes lists each)",
-                escape_line(&kinds[k])
-            );
+            continue;
         }
+        let (count, names) = (same.len(), escape_line(name_list(same)));
+        let kind_text = escape_line(kind);
+        let _ = writeln!(text, "  {count} x {kind_text}: {names} (--notes lists each)");
+        // The line is for all notes of the kind.
+        of_kind.remove(kind.as_str());
     }
 }
 

@@ -117,21 +117,23 @@ fn plain_screw_is_unscrewed_by_the_length_in_its_hole() {
     assert!(json["plan"][1].get("unscrew").is_none());
 }
 
+/// Returns an anchor, a lid, a screw with a name, and a base with an open hole, so that it could be pulled down off the
+/// screw.
+fn pulled_off(name: &str) -> Vec<Part> {
+    let through = [[40.0, -10.0], [40.0, 0.0], [4.0, 0.0], [4.0, -10.0]];
+    vec![
+        part("anchor", &[crate::common::cuboid([-200.0, 60.0, -50.0], [200.0, 100.0, 50.0])]),
+        part("base", &[revolved(&through, DVec2::ZERO, true)]),
+        part("lid", &[disc(4.5, 30.0, [0.0, 6.0])]),
+        part(name, &[screw(-12.0, 6.0)]),
+    ]
+}
+
 /// A loose shank may leave through the base, away from its head, unless it holds the lid: a cap between head and lid
 /// blocks the head, so the base would leave first.
 #[test]
 fn part_is_not_pulled_off_a_screw_that_holds_it() {
-    // The base has an open hole, so it could be pulled down off the screw.
-    let through = [[40.0, -10.0], [40.0, 0.0], [4.0, 0.0], [4.0, -10.0]];
-    let parts = |name: &str| {
-        vec![
-            part("anchor", &[crate::common::cuboid([-200.0, 60.0, -50.0], [200.0, 100.0, 50.0])]),
-            part("base", &[revolved(&through, DVec2::ZERO, true)]),
-            part("lid", &[disc(4.5, 30.0, [0.0, 6.0])]),
-            part(name, &[screw(-12.0, 6.0)]),
-        ]
-    };
-    let assembly = Assembly::new(parts("screw")).unwrap();
+    let assembly = Assembly::new(pulled_off("screw")).unwrap();
     let order = removed(&assembly, &planned(&assembly));
     let at = |name: &str| order.iter().position(|step| step.contains(&name)).unwrap();
     assert!(at("screw") < at("base") && at("screw") < at("lid"), "{order:?}");
@@ -234,16 +236,9 @@ fn order_with_fasteners_is_deterministic_on_any_number_of_threads() {
 
 #[test]
 fn screws_of_selected_parts_are_removed_first() {
-    // The base could be pulled off the screw, down.
-    let through = [[40.0, -10.0], [40.0, 0.0], [4.0, 0.0], [4.0, -10.0]];
     let parts = |name: &str| {
-        vec![
-            part("anchor", &[crate::common::cuboid([-200.0, 60.0, -50.0], [200.0, 100.0, 50.0])]),
-            part("base", &[revolved(&through, DVec2::ZERO, true)]),
-            part("lid", &[disc(4.5, 30.0, [0.0, 6.0])]),
-            part(name, &[screw(-12.0, 6.0)]),
-            part("post", &[crate::common::cuboid([60.0, -5.0, -50.0], [70.0, 5.0, 50.0])]),
-        ]
+        let post = crate::common::cuboid([60.0, -5.0, -50.0], [70.0, 5.0, 50.0]);
+        [pulled_off(name), vec![part("post", &[post])]].concat()
     };
     for (name, order) in [("screw", vec![vec!["screw"], vec!["base"]]), ("rod", vec![vec!["base"]])]
     {

@@ -14,6 +14,7 @@ use colltrans_assembly_io::read::{ReadOptions, read};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::block;
 use colltrans_testkit::solids::TRAY_WITH_GROOVES;
 use glam::{DAffine3, DVec3};
 
@@ -537,22 +538,12 @@ fn enclosed_parts_are_proven_to_stay() {
         [[-1.0, 0.0, 0.0], [0.0, 2.0, 2.0]],
         [[2.0, 0.0, 0.0], [3.0, 2.0, 2.0]],
     ];
-    let shell = |walls: &[[[f64; 3]; 2]]| {
-        // The pieces become one body with a cavity.
-        let hollow = colltrans_testkit::shapes::block(DVec3::splat(-1.0), DVec3::splat(3.0));
-        let cavity = colltrans_testkit::shapes::block(DVec3::ZERO, DVec3::splat(2.0));
-        if walls.is_empty() {
-            let mut vertices = hollow.vertices;
-            let first = vertices.len() as u32;
-            vertices.extend(cavity.vertices);
-            let turned = |face: &Vec<u32>| face.iter().rev().map(|v| v + first).collect::<Vec<_>>();
-            let mut faces = hollow.faces;
-            faces.extend(cavity.faces.iter().map(turned));
-            let piece =
-                Piece { mesh: Mesh::new(vertices, faces), world_from_piece: DAffine3::IDENTITY };
-            return part("shell", &[piece]);
-        }
-        blocks("shell", walls)
+    // One body with a cavity.
+    let hollow = || {
+        let outside = block(DVec3::splat(-1.0), DVec3::splat(3.0));
+        let body = outside.joined(&block(DVec3::ZERO, DVec3::splat(2.0)).reversed());
+        let mesh = Mesh::new(body.vertices, body.faces);
+        part("shell", &[Piece { mesh, world_from_piece: DAffine3::IDENTITY }])
     };
     let small = |name: &str, low: f64| blocks(name, &[[[low; 3], [low + 0.7; 3]]]);
     let foot = blocks("foot", &[[[-1.0, -1.0, -3.0], [3.0, 3.0, -1.0]]]);
@@ -562,22 +553,22 @@ fn enclosed_parts_are_proven_to_stay() {
         let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
         (record::plan_json(&bodies, &plan), plan)
     };
-    let (json, plan) = told(vec![small("cube", 0.1), shell(&[]), foot]);
+    let (json, plan) = told(vec![small("cube", 0.1), hollow(), foot]);
     assert_eq!((plan.steps.len(), &plan.interlocked[0].parts[..]), (1, &[0, 1][..]));
     assert_eq!(plan.interlocked[0].path_search, PathSearch::Enclosed);
     assert_eq!(json["left"], serde_json::json!(["cube", "shell"]));
     assert_eq!(json["stuck"][0]["moves"], serde_json::json!({ "enclosed": true }));
     // Two cubes in the cavity, which block each other.
-    let (_, plan) = told(vec![small("a", 0.1), small("b", 1.1), shell(&[])]);
+    let (_, plan) = told(vec![small("a", 0.1), small("b", 1.1), hollow()]);
     assert_eq!(plan.interlocked[0].path_search, PathSearch::Enclosed);
     // A touching cube below the box, and one that touches the wall from inside.
     let below = blocks("below", &[[[0.0, 0.0, -2.0], [1.0, 1.0, -1.0]]]);
-    let (_, plan) = told(vec![below, shell(&[])]);
+    let (_, plan) = told(vec![below, hollow()]);
     assert!(plan.interlocked.is_empty(), "{plan:?}");
-    let (_, plan) = told(vec![small("cube", 0.0), shell(&[])]);
+    let (_, plan) = told(vec![small("cube", 0.0), hollow()]);
     assert_eq!(plan.interlocked[0].path_search, PathSearch::Enclosed);
     // A box of walls that has a window is not closed.
-    let (json, plan) = told(vec![small("cube", 0.1), shell(&walls[..5])]);
+    let (json, plan) = told(vec![small("cube", 0.1), blocks("shell", &walls[..5])]);
     assert!(plan.interlocked.is_empty(), "{plan:?}");
     assert_eq!(json["left"], serde_json::json!([]));
 }

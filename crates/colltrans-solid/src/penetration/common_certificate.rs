@@ -292,13 +292,44 @@ pub enum NodeFault {
     Depth,
 }
 
-/// What a tree proves.
+/// What the cells of a tree prove.
+#[derive(Default)]
 pub(super) struct ProvenCells {
-    pub(super) volume: [f64; 2],
+    /// Sums of the lower and of the upper bounds of volumes, not yet rounded outwards.
+    sums: [f64; 2],
+    /// Number of volumes in the sums.
+    count: u32,
     /// Whether there are cells inside both bodies, outside the moving or the fixed one, and undecided ones.
     both: bool,
     outside: [bool; 2],
     undecided: bool,
+}
+
+impl ProvenCells {
+    /// Adds a cell with a kind that is proven. `volume` computes bounds of its volume if they count.
+    pub(super) fn add(&mut self, kind: CommonNode, volume: impl FnOnce() -> [f64; 2]) {
+        match kind {
+            CommonNode::OutsideMoving => self.outside[0] = true,
+            CommonNode::OutsideFixed => self.outside[1] = true,
+            _ => {
+                let [low, high] = volume();
+                if kind == CommonNode::Both {
+                    self.both = true;
+                    self.sums[0] += low;
+                } else {
+                    self.undecided = true;
+                }
+                self.sums[1] += high;
+                self.count += 1;
+            }
+        }
+    }
+
+    /// Returns bounds of the volume of the common part.
+    pub(super) fn volume(&self) -> [f64; 2] {
+        let rounding = f64::EPSILON * (f64::from(self.count) + 4.0);
+        [self.sums[0] * (1.0 - rounding), self.sums[1] * (1.0 + rounding)]
+    }
 }
 
 /// Work of a verification so far.
@@ -360,7 +391,7 @@ pub(super) fn decide_side(
 }
 
 /// Returns the sides of a box as planes.
-fn box_planes(exact: &ExactPair, bounds: &Aabb) -> Option<[[Rc<Plane>; 2]; 3]> {
+pub(super) fn box_planes(exact: &ExactPair, bounds: &Aabb) -> Option<[[Rc<Plane>; 2]; 3]> {
     let plane = |axis: usize, at: DVec3| exact.coordinate_plane(axis, at[axis]);
     let sides = |axis: usize| Some([plane(axis, bounds.low)?, plane(axis, bounds.high)?]);
     Some([sides(0)?, sides(1)?, sides(2)?])
@@ -392,12 +423,7 @@ pub(super) fn root_cell(
     let cell = Cell::from_box(&planes, exact.unit);
     let mut cell = cell.ok_or_else(|| fault(0, root.low.x))?;
     for (k, body) in exact.bodies.iter().enumerate() {
-        let whole = body.fragments(exact.unit);
-        let clipped = whole.filter_map(|mut fragment| {
-            fragment.polygon = cell.clip(fragment.polygon, exact.unit)?;
-            Some(fragment)
-        });
-        cell.fragments[k] = clipped.collect();
+        cell.fragments[k] = cell.clip(body.fragments(&planes, exact.unit), exact.unit);
     }
     Ok((cell, contains))
 }
@@ -425,7 +451,7 @@ impl CommonNode {
     }
 
     /// Checks whether the node is a cell.
-    const fn is_cell(self) -> bool {
+    pub(super) const fn is_cell(self) -> bool {
         matches!(self, Self::Both | Self::OutsideMoving | Self::OutsideFixed | Self::Undecided)
     }
 }
@@ -433,16 +459,14 @@ impl CommonNode {
 /// Walks through a tree depth first, and returns what its cells prove. Passes each cell that is not outside a body, with
 /// the position of its node, to `visit`. Cells are dropped after their visit, so that memory is that of one path of the
 /// tree.
-pub(super) fn proven_cells(
+fn proven_cells(
     exact: &ExactPair,
     root: Cell,
     nodes: &[CommonNode],
-    mut visit: impl FnMut(usize, Cell) -> Result<(), CommonPartError>,
+    mut visit: impl FnMut(usize, &Cell) -> Result<(), CommonPartError>,
 ) -> Result<ProvenCells, CommonPartError> {
     let mut work = Work::new(exact, MAX_WORK);
-    let mut proven =
-        ProvenCells { volume: [0.0; 2], both: false, outside: [false; 2], undecided: false };
-    let mut cells = 0_u32;
+    let mut proven = ProvenCells::default();
     let mut open = vec![(root, 0)];
     for (node, &kind) in nodes.iter().enumerate() {
         let fault = |reason| CommonPartError::Node { node, reason };
@@ -478,28 +502,14 @@ pub(super) fn proven_cells(
                 return Err(fault(NodeFault::OtherSide));
             }
         }
-        match kind {
-            CommonNode::OutsideMoving => proven.outside[0] = true,
-            CommonNode::OutsideFixed => proven.outside[1] = true,
-            _ => {
-                let [low, high] = cell.volume(exact.unit);
-                if kind == CommonNode::Both {
-                    proven.both = true;
-                    proven.volume[0] += low;
-                } else {
-                    proven.undecided = true;
-                }
-                proven.volume[1] += high;
-                cells += 1;
-                visit(node, cell)?;
-            }
+        if matches!(kind, CommonNode::Both | CommonNode::Undecided) {
+            visit(node, &cell)?;
         }
+        proven.add(kind, || cell.volume(exact.unit));
     }
     if !open.is_empty() {
         return Err(CommonPartError::Node { node: nodes.len(), reason: NodeFault::End });
     }
-    let rounding = f64::EPSILON * (f64::from(cells) + 4.0);
-    proven.volume = [proven.volume[0] * (1.0 - rounding), proven.volume[1] * (1.0 + rounding)];
     Ok(proven)
 }
 
@@ -541,7 +551,7 @@ fn check_coordinates(field: &'static str, at: DVec3) -> Result<(), CommonPartErr
 }
 
 /// Checks whether a cell is within the sides of a box.
-fn is_within(planes: &[[Rc<Plane>; 2]; 3], cell: &Cell) -> bool {
+pub(super) fn is_within(planes: &[[Rc<Plane>; 2]; 3], cell: &Cell) -> bool {
     cell.vertices().all(|at| {
         planes
             .iter()
@@ -549,25 +559,37 @@ fn is_within(planes: &[[Rc<Plane>; 2]; 3], cell: &Cell) -> bool {
     })
 }
 
+/// Checks that no body is rounded.
+pub(super) fn check_is_query(pair: &Pair<'_, Solid>) -> Result<(), CommonPartError> {
+    for body in [pair.moving(), pair.fixed()] {
+        check_is_not_rounded(body.radius()).map_err(QueryError::from)?;
+    }
+    Ok(())
+}
+
+/// Checks that the numbers of a proof are admitted.
+pub(super) fn check_numbers(proof: &CommonPartCertificate) -> Result<(), CommonPartError> {
+    let [lower, upper] = proof.volume;
+    if !(0.0 <= lower && lower <= upper && upper.is_finite()) {
+        return Err(CommonPartError::Volume { volume: proof.volume });
+    }
+    let boxes = [("root", Some(proof.root)), ("bounds", proof.bounds)];
+    for (field, of) in boxes.into_iter().filter_map(|(field, of)| Some((field, of?))) {
+        check_coordinates(field, of.low)?;
+        check_coordinates(field, of.high)?;
+    }
+    Ok(())
+}
+
 /// Verifies a proof. Returns the difference of the bounds of the volume.
 pub(super) fn verify_common_part(
     pair: &Pair<'_, Solid>,
     proof: &CommonPartCertificate,
 ) -> Result<f64, CommonPartError> {
-    for body in [pair.moving(), pair.fixed()] {
-        check_is_not_rounded(body.radius()).map_err(QueryError::from)?;
-    }
+    check_is_query(pair)?;
+    check_numbers(proof)?;
     let CommonPartCertificate { volume, bounds, point, relation, root, nodes } = proof;
     let [lower, upper] = *volume;
-    if !(0.0 <= lower && lower <= upper && upper.is_finite()) {
-        return Err(CommonPartError::Volume { volume: *volume });
-    }
-    check_coordinates("root", root.low)?;
-    check_coordinates("root", root.high)?;
-    if let Some(Aabb { low, high }) = bounds {
-        check_coordinates("bounds", *low)?;
-        check_coordinates("bounds", *high)?;
-    }
     let exact = ExactPair::new(pair);
     let mut claims = Vec::new();
     claims.extend(point.map(|at| ("point", at, [true, true])));
@@ -583,13 +605,14 @@ pub(super) fn verify_common_part(
     }
     let (cell, contains) = root_cell(&exact, root)?;
     let planes = bounds.as_ref().and_then(|bounds| box_planes(&exact, bounds));
-    let check_bounds = |node: usize, cell: Cell| match &planes {
-        Some(planes) if is_within(planes, &cell) => Ok(()),
+    let check_bounds = |node: usize, cell: &Cell| match &planes {
+        Some(planes) if is_within(planes, cell) => Ok(()),
         _ => Err(CommonPartError::Bounds { node }),
     };
     let cells = proven_cells(&exact, cell, nodes, check_bounds)?;
-    if lower > cells.volume[0] || upper < cells.volume[1] {
-        let (claimed, proven) = (*volume, cells.volume);
+    let proven = cells.volume();
+    if lower > proven[0] || upper < proven[1] {
+        let claimed = *volume;
         return Err(CommonPartError::VolumeBounds { claimed, proven });
     }
     match relation {

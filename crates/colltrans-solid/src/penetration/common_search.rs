@@ -3,12 +3,13 @@
 //! - The cell with the largest undecided volume is cut next, in the plane of a facet or in the middle of its longest
 //!   side. Of some candidates, the plane that leaves the cheapest parts is used: a part with `n` facets costs
 //!   `n log(1 + n)`.
-//! - Cuts are chosen by rounded numbers. Cells are divided and decided exactly, by the code that verifies the proof.
+//! - Cuts are chosen by rounded numbers. Cells are divided and decided exactly, by the code that verifies the proof, so
+//!   that the volume and the box are computed from the cells of the search, and the tree is walked only once.
 //! - The search ends if no cell is undecided, if its work is done, or if the bounds of the volume are close enough. A
 //!   small number of cells is always searched, so that the volume of simple bodies is exact.
 
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BinaryHeap};
 use std::rc::Rc;
 
 use glam::DVec3;
@@ -16,15 +17,14 @@ use glam::DVec3;
 use super::common::VolumeOptions;
 use super::common_certificate::{
     CommonNode, CommonPartCertificate, CommonPartError, ProvenCells, ProvenRelation, Work,
-    bounds_body, decide_side, has_sides, proven_cells, proves_relation, root_cell,
-    verify_common_part,
+    bounds_body, box_planes, check_is_query, check_numbers, decide_side, has_sides, is_within,
+    proves_relation, root_cell, verify_common_part,
 };
 use super::cuts::{Cell, Vertex};
 use super::exact_pair::ExactPair;
-use crate::body::{Solid, check_is_not_rounded};
+use crate::body::Solid;
 use colltrans_convex::body::Aabb;
 use colltrans_convex::pair::Pair;
-use colltrans_convex::setting::error::QueryError;
 use colltrans_kernel::range::with_tiny_components_zeroed;
 
 /// Maximum work of a search, an eighth of that of a verification.
@@ -76,24 +76,29 @@ impl Ord for Open {
     }
 }
 
-/// A tree under construction: each node, and the positions of its children.
+/// A tree: each node, and the positions of its children.
 struct Tree {
     nodes: Vec<(CommonNode, Option<[usize; 2]>)>,
 }
 
 impl Tree {
-    /// Returns the nodes in the order of the proof.
-    fn in_order(&self) -> Vec<CommonNode> {
-        let (mut open, mut nodes) = (vec![0], Vec::with_capacity(self.nodes.len()));
+    /// Returns the positions of the nodes in the order of the proof.
+    fn in_order(&self) -> Vec<usize> {
+        let (mut open, mut order) = (vec![0], Vec::with_capacity(self.nodes.len()));
         while let Some(at) = open.pop() {
-            let (kind, children) = self.nodes[at];
-            nodes.push(kind);
-            if let Some([behind, before]) = children {
+            order.push(at);
+            if let Some([behind, before]) = self.nodes[at].1 {
                 open.extend([before, behind]);
             }
         }
-        nodes
+        order
     }
+}
+
+/// A divided root: its tree, and the cells that are not outside a body, by the position of the node.
+struct Divided {
+    tree: Tree,
+    cells: BTreeMap<usize, Cell>,
 }
 
 /// Computes the proof of the common part of two solids.
@@ -101,42 +106,59 @@ pub(super) fn certified_common_part(
     pair: &Pair<'_, Solid>,
     options: VolumeOptions,
 ) -> Result<CommonPartCertificate, CommonPartError> {
-    for body in [pair.moving(), pair.fixed()] {
-        check_is_not_rounded(body.radius()).map_err(QueryError::from)?;
-    }
+    check_is_query(pair)?;
     let exact = ExactPair::new(pair);
     let root = root_box(&exact);
     let (cell, contains) = root_cell(&exact, &root)?;
-    let nodes = search(&exact, cell.clone(), options).in_order();
-    let (mut near, mut largest) = (Aabb::EMPTY, Vec::new());
-    let cells = proven_cells(&exact, cell, &nodes, |node, cell| {
-        for at in cell.vertices().map(|at| at.near) {
-            near = Aabb { low: near.low.min(at), high: near.high.max(at) };
+    let Divided { tree, cells } = search(&exact, cell, options);
+    let (mut nodes, mut largest) = (Vec::with_capacity(tree.nodes.len()), Vec::new());
+    let mut proven = ProvenCells::default();
+    for at in tree.in_order() {
+        let kind = tree.nodes[at].0;
+        nodes.push(kind);
+        if kind.is_cell() {
+            proven.add(kind, || cells[&at].volume(exact.unit));
         }
-        if nodes[node] == CommonNode::Both {
-            keep_largest(&mut largest, cell);
+        if kind == CommonNode::Both {
+            keep_largest(&mut largest, &cells[&at]);
         }
-        Ok(())
-    })?;
+    }
     let point = common_point(&exact, &largest);
-    let relation = relation(&exact, &cells, contains, point.is_some());
-    let is_empty = near.low.x > near.high.x;
-    let volume = cells.volume;
-    let mut proof = CommonPartCertificate { volume, bounds: None, point, relation, root, nodes };
-    let mut verified = Ok(0.0);
-    for steps in OUTWARDS {
+    let relation = relation(&exact, &proven, contains, point.is_some());
+    let bounds = bounds_of_cells(&exact, cells.values())?;
+    let volume = proven.volume();
+    let proof = CommonPartCertificate { volume, bounds, point, relation, root, nodes };
+    check_numbers(&proof)?;
+    debug_assert_eq!(verify_common_part(pair, &proof), Ok(volume[1] - volume[0]));
+    Ok(proof)
+}
+
+/// Returns a box that contains some cells; `None` if there are none.
+fn bounds_of_cells<'c>(
+    exact: &ExactPair,
+    cells: impl Iterator<Item = &'c Cell> + Clone,
+) -> Result<Option<Aabb>, CommonPartError> {
+    let corners = cells.clone().flat_map(|cell| cell.vertices().map(|at| at.near));
+    let near = Aabb::from_points(corners);
+    if near.low.x > near.high.x {
+        return Ok(None);
+    }
+    let boxes = OUTWARDS.map(|steps| {
         let corner = |of: DVec3, is_high: bool| {
-            let number = |axis: usize| moved_outwards(&exact, of[axis], axis, is_high, steps);
+            let number = |axis: usize| moved_outwards(exact, of[axis], axis, is_high, steps);
             DVec3::from_array([number(0), number(1), number(2)])
         };
         let bounds = Aabb { low: corner(near.low, false), high: corner(near.high, true) };
-        proof.bounds = (!is_empty).then_some(bounds);
-        verified = verify_common_part(pair, &proof);
-        if !matches!(verified, Err(CommonPartError::Bounds { .. })) {
-            break;
+        box_planes(exact, &bounds).map(|planes| (bounds, planes))
+    });
+    let mut boxes = boxes.into_iter().flatten().peekable();
+    for (node, cell) in cells.enumerate() {
+        while boxes.next_if(|(_, planes)| !is_within(planes, cell)).is_some() {}
+        if boxes.peek().is_none() {
+            return Err(CommonPartError::Bounds { node });
         }
     }
-    verified.map(|_| proof)
+    Ok(boxes.next().map(|(bounds, _)| bounds))
 }
 
 /// Returns a number of the world that is at most, or at least, a rounded coordinate relative to the base point, by a
@@ -193,11 +215,11 @@ fn decide(exact: &ExactPair, cell: &mut Cell, work: &mut Work) -> Option<(Common
     })
 }
 
-/// A cell with its node, and with its volume if that counts.
+/// A cell with its kind, and whether a cut may decide more.
 struct Placed {
     kind: CommonNode,
-    volume: f64,
-    open: Option<Open>,
+    open: Open,
+    is_cut: bool,
 }
 
 /// The state of a search.
@@ -206,66 +228,83 @@ struct Search<'e> {
     work: Work,
     tree: Tree,
     open: BinaryHeap<Open>,
+    /// Cells that are not outside a body, and that no cut decides.
+    cells: BTreeMap<usize, Cell>,
     /// Volumes of the cells inside both bodies and of those that are not decided.
     both: f64,
     undecided: f64,
 }
 
 impl Search<'_> {
-    /// Decides a cell and stores its node. `None` if the work is done.
+    /// Decides the cell of a node. `None` if the work is done.
     fn place(&mut self, mut cell: Cell, node: usize, depth: u32) -> Option<Placed> {
         self.work.add_cell(&cell)?;
         let (kind, is_cut) = decide(self.exact, &mut cell, &mut self.work)?;
-        self.tree.nodes[node].0 = kind;
         let volume = match kind {
             CommonNode::Both | CommonNode::Undecided => cell.near_volume(),
             _ => 0.0,
         };
-        let open = (is_cut && depth < MAX_DEPTH).then_some(Open { volume, node, depth, cell });
-        Some(Placed { kind, volume, open })
+        Some(Placed { kind, open: Open { volume, node, depth, cell }, is_cut })
     }
 
-    /// Adds a cell to the sums, and to the cells that a cut may decide.
+    /// Stores the node of a cell, and the cell if it is not outside a body.
     fn add(&mut self, placed: Placed) {
-        match placed.kind {
-            CommonNode::Both => self.both += placed.volume,
-            CommonNode::Undecided => self.undecided += placed.volume,
-            _ => {}
+        let Placed { kind, open, is_cut } = placed;
+        self.tree.nodes[open.node].0 = kind;
+        match kind {
+            CommonNode::Both => self.both += open.volume,
+            CommonNode::Undecided => self.undecided += open.volume,
+            _ => return,
         }
-        self.open.extend(placed.open);
+        if is_cut && open.depth < MAX_DEPTH {
+            self.open.push(open);
+        } else {
+            self.cells.insert(open.node, open.cell);
+        }
+    }
+
+    /// Ends the search.
+    fn end(mut self) -> Divided {
+        self.cells.extend(self.open.into_iter().map(|open| (open.node, open.cell)));
+        Divided { tree: self.tree, cells: self.cells }
     }
 }
 
 /// Divides the root until the bounds of the volume are close enough or the work is done.
-fn search(exact: &ExactPair, root: Cell, options: VolumeOptions) -> Tree {
+fn search(exact: &ExactPair, root: Cell, options: VolumeOptions) -> Divided {
     let work = Work::new(exact, MAX_WORK);
     let tree = Tree { nodes: vec![(CommonNode::Undecided, None)] };
-    let open = BinaryHeap::new();
-    let mut search = Search { exact, work, tree, open, both: 0.0, undecided: 0.0 };
-    let mut cells = 1;
-    let Some(placed) = search.place(root, 0, 0) else { return search.tree };
-    search.add(placed);
-    while let Some(Open { volume, node, depth, cell }) = search.open.pop() {
+    let (open, cells) = (BinaryHeap::new(), BTreeMap::new());
+    let mut search = Search { exact, work, tree, open, cells, both: 0.0, undecided: 0.0 };
+    match search.place(root.clone(), 0, 0) {
+        Some(placed) => search.add(placed),
+        None => _ = search.cells.insert(0, root),
+    }
+    let mut count = 1;
+    while let Some(open) = search.open.pop() {
         let is_accurate = search.undecided <= options.accuracy * search.both;
-        if (is_accurate && cells >= LEAST_CELLS) || cells >= options.max_cells as usize {
+        if (is_accurate && count >= LEAST_CELLS) || count >= options.max_cells as usize {
+            search.open.push(open);
             break;
         }
-        let Some((kind, [behind, before])) = divide(exact, &cell) else { continue };
-        let first = search.tree.nodes.len();
-        search.tree.nodes.extend([(CommonNode::Undecided, None); 2]);
-        let placed =
-            [search.place(behind, first, depth + 1), search.place(before, first + 1, depth + 1)];
+        let Some((kind, [behind, before])) = divide(exact, &open.cell) else {
+            search.cells.insert(open.node, open.cell);
+            continue;
+        };
+        let (first, depth) = (search.tree.nodes.len(), open.depth + 1);
+        let placed = [search.place(behind, first, depth), search.place(before, first + 1, depth)];
         let [Some(behind), Some(before)] = placed else {
-            search.tree.nodes.truncate(first);
+            search.open.push(open);
             break;
         };
-        search.tree.nodes[node] = (kind, Some([first, first + 1]));
-        cells += 1;
-        search.undecided = (search.undecided - volume).max(0.0);
+        search.tree.nodes.extend([(CommonNode::Undecided, None); 2]);
+        search.tree.nodes[open.node] = (kind, Some([first, first + 1]));
+        count += 1;
+        search.undecided = (search.undecided - open.volume).max(0.0);
         search.add(behind);
         search.add(before);
     }
-    search.tree
+    search.end()
 }
 
 /// A cut of a cell.
@@ -348,7 +387,7 @@ fn in_world(exact: &ExactPair, at: DVec3) -> DVec3 {
 }
 
 /// Adds a cell to the [`CANDIDATES`] largest ones, which are sorted.
-fn keep_largest(largest: &mut Vec<(f64, Cell)>, cell: Cell) {
+fn keep_largest<'c>(largest: &mut Vec<(f64, &'c Cell)>, cell: &'c Cell) {
     let volume = cell.near_volume();
     let at = largest.partition_point(|(other, _)| *other >= volume);
     if at < CANDIDATES {
@@ -358,7 +397,7 @@ fn keep_largest(largest: &mut Vec<(f64, Cell)>, cell: Cell) {
 }
 
 /// Finds a point inside both bodies, in one of some cells inside both.
-fn common_point(exact: &ExactPair, cells: &[(f64, Cell)]) -> Option<DVec3> {
+fn common_point(exact: &ExactPair, cells: &[(f64, &Cell)]) -> Option<DVec3> {
     cells.iter().find_map(|(_, cell)| {
         let point: Vertex = cell.interior_point(exact.unit)?;
         let at = in_world(exact, point.near);

@@ -335,6 +335,14 @@ pub(super) struct Fragment {
     pub(super) polygon: Polygon,
 }
 
+impl Fragment {
+    /// Returns the part on a side of the plane of a cut; `None` if no corner is strictly on this side.
+    fn part(&self, cut: &mut Cut, side: Ordering) -> Option<Self> {
+        let polygon = cut.part(&self.polygon, side)?;
+        Some(Self { triangle: self.triangle, polygon })
+    }
+}
+
 /// A convex polytope with an interior, and the parts of the facets of both bodies that meet its interior.
 #[derive(Debug, Clone)]
 pub(super) struct Cell {
@@ -395,13 +403,9 @@ impl Cell {
         };
         let [behind, before] = [part(Ordering::Less)?, part(Ordering::Greater)?];
         let mut fragments = |side: Ordering| {
-            self.fragments.each_ref().map(|all| {
-                let part = |of: &Fragment| {
-                    let polygon = cut.part(&of.polygon, side)?;
-                    Some(Fragment { triangle: of.triangle, polygon })
-                };
-                all.iter().filter_map(part).collect()
-            })
+            self.fragments
+                .each_ref()
+                .map(|all| all.iter().filter_map(|of| of.part(&mut cut, side)).collect())
         };
         let parts = [fragments(Ordering::Less), fragments(Ordering::Greater)];
         let inside = self.inside;
@@ -453,13 +457,15 @@ impl Cell {
         self.faces.iter().flat_map(|face| face.ring.iter().map(|corner| &corner.at))
     }
 
-    /// Returns the part of a polygon in the interior of the cell; `None` if there is none.
-    pub(super) fn clip(&self, polygon: Polygon, unit: i32) -> Option<Polygon> {
-        self.faces.iter().try_fold(polygon, |rest, face| {
-            let off_plane = self.off_plane(face)?;
+    /// Returns the parts of facets in the interior of the cell. Facets without such a part are left out.
+    pub(super) fn clip(&self, mut all: Vec<Fragment>, unit: i32) -> Vec<Fragment> {
+        for face in &self.faces {
+            let Some(off_plane) = self.off_plane(face) else { return Vec::new() };
             let inwards = face.plane.side(off_plane);
-            Cut::new(&face.plane, unit).part(&rest, inwards)
-        })
+            let mut cut = Cut::new(&face.plane, unit);
+            all = all.iter().filter_map(|of| of.part(&mut cut, inwards)).collect();
+        }
+        all
     }
 
     /// Returns a vertex that does not lie in the plane of a face.

@@ -165,11 +165,20 @@ impl ExactBody {
         self.facets.iter().flat_map(|facet| &facet.corners)
     }
 
-    /// Returns the facets as parts of a cell that contains them.
-    pub(super) fn fragments(&self, unit: i32) -> impl Iterator<Item = Fragment> {
-        self.facets.iter().filter_map(move |facet| {
+    /// Returns the facets that have a corner on the inner side of each side of a box, as parts of a cell that contains
+    /// them.
+    pub(super) fn fragments(&self, sides: &[[Rc<Plane>; 2]; 3], unit: i32) -> Vec<Fragment> {
+        let is_beyond = |facet: &ExactFacet, [low, high]: &[Rc<Plane>; 2]| {
+            let are_all = |of: &Plane, inwards: Ordering| {
+                facet.corners.iter().all(|corner| of.side(corner) != inwards)
+            };
+            are_all(low, Ordering::Greater) || are_all(high, Ordering::Less)
+        };
+        let near = self.facets.iter().filter(|of| !sides.iter().any(|axis| is_beyond(of, axis)));
+        let whole = near.filter_map(|facet| {
             Some(Fragment { triangle: facet.triangle, polygon: facet.polygon(unit)? })
-        })
+        });
+        whole.collect()
     }
 
     /// Decides whether a point that lies on no facet is inside.

@@ -354,6 +354,13 @@ impl<'a> Bodies<'a> {
         [&self.pair_body([a, b]).solid, &self.pair_body([b, a]).solid]
     }
 
+    /// Checks whether facets of the bodies of a pair are inside out or pass through others, because a part is thinner
+    /// than the tolerance there.
+    pub(crate) fn has_inverted_facets(&self, [a, b]: [usize; 2]) -> bool {
+        let bodies = [self.pair_body([a, b]), self.pair_body([b, a])];
+        bodies.iter().any(|body| !body.report.inverted.is_empty())
+    }
+
     /// Returns the fit of a pair with a role or tolerance of its own, if any.
     fn own_fit(&self, [a, b]: [usize; 2]) -> Option<&OwnFit> {
         self.count_visit();

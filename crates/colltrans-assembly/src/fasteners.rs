@@ -333,7 +333,7 @@ fn recognise_key(
 }
 
 /// Returns the length of the unit of an assembly in millimetres; 1 if the unit is unknown.
-fn millimetres_per_unit(assembly: &Assembly) -> f64 {
+pub(crate) fn millimetres_per_unit(assembly: &Assembly) -> f64 {
     assembly.unit().and_then(units::unit_in_metres).map_or(1.0, |metres| metres * 1e3)
 }
 

@@ -52,6 +52,7 @@ pub mod sphere;
 pub mod start;
 pub mod suggest;
 pub mod threads;
+pub mod tools;
 pub mod travel;
 pub mod units;
 

@@ -351,8 +351,8 @@ impl<'a> Planner<'a> {
             let mut tested: HashSet<[u64; 3]> =
                 matrix.directions().iter().copied().map(direction_bits).collect();
             let (mut choice, mut whole) = (order.best_single_part(&mut single), None);
-            if choice.is_none() && order.relax() {
-                // The order of the fasteners permits no part alone: this step ignores it.
+            while choice.is_none() && order.relax() {
+                // The order of tools or fasteners permits no part alone: this step ignores it.
                 choice = order.best_single_part(&mut single_parts(&order)?);
             }
             if choice.is_none() {
@@ -458,12 +458,14 @@ impl<'a> Planner<'a> {
             None => path.push(Leg::straight(parts.clone(), direction, travel.value)),
         }
         let unscrewing = self.known.plain_unscrewing(&path, &parts, present);
+        let tool = self.known.tool_reach(&path, &parts, present);
         self.plan.steps.push(Step {
             parts: parts.clone(),
             direction,
             travel,
             path,
             unscrewing,
+            tool,
             return_legs: back,
             group_step: removed.within,
             predecessors: after,
@@ -528,7 +530,7 @@ impl<'a> Planner<'a> {
         RemovedParts { within, step_of_part }: &RemovedParts,
     ) -> Vec<usize> {
         let mut after: Vec<usize> = within.iter().copied().collect();
-        let constraints = &self.known.preferred;
+        let constraints = &self.known.preferred[0];
         if constraints.is_any_order() {
             let waits =
                 step_of_part.iter().filter(|(part, _)| constraints.must_wait_for(group, **part));

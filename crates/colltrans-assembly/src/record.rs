@@ -183,6 +183,7 @@ pub fn plan_json(bodies: &Bodies, plan: &Plan) -> Value {
             "parts": names(&wanted.parts),
             "others": names(&wanted.others),
             "fasteners": names(&wanted.fasteners),
+            "obstacles": names(&wanted.obstacles),
             "least": wanted.is_minimal,
             "out": wanted.is_complete,
         });
@@ -207,6 +208,15 @@ fn step_json(assembly: &Assembly, step: &Step) -> Value {
     }
     if let Some(turns) = &step.unscrewing {
         object["unscrew"] = unscrewing_json(turns);
+    }
+    if let Some(reach) = &step.tool {
+        let names = |parts: &[usize]| assembly.part_names(parts).join(", ");
+        object["tool"] = json!({
+            "name": reach.tool,
+            "reaches": reach.blockers.is_empty(),
+            "blockers": assembly.part_names(&reach.blockers),
+            "words": reach.describe(names),
+        });
     }
     if !step.ignored.is_empty() {
         let pairs: Vec<_> = step.ignored.iter().map(|pair| assembly.part_names(pair)).collect();

@@ -31,6 +31,7 @@ use colltrans_assembly::roles::{PairFit, PairTolerance, Role};
 use colltrans_assembly::sphere::normalized_direction;
 use colltrans_assembly::start::Start;
 use colltrans_assembly::suggest::{Suggestion, suggest_fits, suggest_loose_threads};
+use colltrans_assembly::tools::ToolReach;
 use colltrans_assembly::travel::{PartTravel, travels_of_parts};
 use colltrans_assembly::{
     Analysis, AnalysisRequest, AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch,
@@ -57,7 +58,7 @@ type LegRow = (Vec<usize>, [f64; 3], f64, Option<TurnRow>);
 type TurnRow = ([f64; 3], f64, f64, [f64; 3], Option<f64>, String);
 /// A step of a plan: parts, direction, travel, bounds of the travel, moves out and back, the step that
 /// removed the group that contains these parts, the steps before it, ignored pairs, tolerated pairs, and
-/// three lists: parts that fall, parts that are off balance, support surfaces. At last the unscrewing.
+/// three lists: parts that fall, parts that are off balance, support surfaces. At last the unscrewing and the tool.
 type StepRow = (
     Vec<usize>,
     [f64; 3],
@@ -70,9 +71,12 @@ type StepRow = (
     Vec<PassedRow>,
     [Vec<usize>; 3],
     Option<UnscrewingRow>,
+    Option<ToolRow>,
 );
 /// Length, number of turns, pitch, and a description.
 type UnscrewingRow = (f64, f64, f64, String);
+/// Name, parts in the way, and a description.
+type ToolRow = (String, Vec<usize>, String);
 /// Kind, designation and description of a fastener, its diameter, length and width, its axis, and whether it rests on
 /// its name.
 type FastenerRow = (&'static str, String, String, [f64; 3], [[f64; 3]; 2], bool);
@@ -608,6 +612,11 @@ impl Assembly {
         let planned =
             Planned { assembly: self.0.clone(), choices, question, plan: plan.clone(), times };
         let steps = plan.steps.into_iter();
+        let names = |parts: &[usize]| self.0.part_names(parts).join(", ");
+        let tool = |reach: ToolReach| {
+            let words = reach.describe(names);
+            (reach.tool, reach.blockers, words)
+        };
         let row = |s: Step| {
             let (direction, travel) = (s.direction.to_array(), s.travel);
             let leg = |leg: Leg| {
@@ -630,6 +639,7 @@ impl Assembly {
                 passed,
                 named,
                 s.unscrewing.map(|u| (u.length, u.turns(), u.pitch, u.words())),
+                s.tool.map(tool),
             )
         };
         let steps = steps.map(row).collect();

@@ -335,6 +335,7 @@ class Assembly:
                 list[tuple[list[int], str | None, float | None, str]],
                 list[list[int]],
                 tuple[float, float, float, str] | None,
+                tuple[str, list[int], str] | None,
             ]
         ],
         list[tuple[str, list[int], float]],

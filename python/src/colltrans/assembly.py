@@ -32,6 +32,7 @@ __all__ = [
     "Stage",
     "Step",
     "Stuck",
+    "ToolReach",
     "Turn",
     "Unscrewing",
     "Wanted",
@@ -303,6 +304,32 @@ class Unscrewing:
 
 
 @dataclass(frozen=True)
+class ToolReach:
+    """A hand tool for the fastener that a step removes, among the parts that remain.
+
+    Attributes
+    ----------
+    name : str
+        The tool with its size in millimetres: the first one that reaches, or else the one with the
+        fewest parts in its way.
+    blockers : list of str
+        The parts in its way; empty if it is proven that the tool and the swing of its lever meet no
+        part.
+    words : str
+        A description.
+    """
+
+    name: str
+    blockers: list[str]
+    words: str
+
+    @property
+    def reaches(self) -> bool:
+        """Whether the tool reaches the fastener."""
+        return not self.blockers
+
+
+@dataclass(frozen=True)
 class Step:
     """A step of a plan: a group that is removed.
 
@@ -341,6 +368,8 @@ class Step:
         closed.
     unscrewing : Unscrewing or None
         The turns of a screw or nut without a modelled thread.
+    tool : ToolReach or None
+        The hand tool for a screw, nut or circlip that leaves alone along its axis.
     """
 
     parts: list[str]
@@ -357,6 +386,7 @@ class Step:
     off_balance: list[str]
     surfaces: list[str]
     unscrewing: Unscrewing | None = None
+    tool: ToolReach | None = None
 
 
 @dataclass(frozen=True)
@@ -1114,11 +1144,12 @@ class Assembly:
                     self._names(off_balance),
                     self._names(surfaces),
                     turns and Unscrewing(*turns),
+                    tool and ToolReach(tool[0], self._names(tool[1]), tool[2]),
                 )
                 for parts, d, travel, travel_bounds, (
                     path,
                     back,
-                ), within, after, ignored, passed, (falls, off_balance, surfaces), turns in steps
+                ), within, after, ignored, passed, (falls, off_balance, surfaces), turns, tool in steps
             ],
             [Stage(takes, range(*of), travel) for takes, of, travel in stages],
             self._names(last),

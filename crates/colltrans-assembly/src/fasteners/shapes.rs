@@ -171,7 +171,9 @@ fn cylinder_shape(profile: &mut Profile, rows: &[Row], scale: f64) -> Option<Sha
         return Some(Shape { needs_name: !(rounded && standard), ..dowel });
     }
     let drive = find_drive(profile, [high - 0.8 * length, high]);
-    let is_grub = drive.is_some_and(|(drive, _)| drive != Drive::Slot || pitch.is_some())
+    let is_turned = pitch.is_some() || share(rows, |row| row.outer.is_round()) > 0.7;
+    let is_grub = is_turned
+        && drive.is_some_and(|(drive, _)| drive != Drive::Slot || pitch.is_some())
         && share(rows, |row| row.hole.cover > 0.5) < 0.85
         && length < 10.0 * diameter;
     let is_stud = is_solid && pitch.is_some() && length < SHANK_LENGTH[1] * diameter;

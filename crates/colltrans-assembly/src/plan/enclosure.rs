@@ -4,7 +4,7 @@
 //! it is not 0 at a vertex of another part, this vertex stays enclosed in all motions in which the surfaces of both
 //! parts do not cross: translations and turns, also of several parts at the same time. Surfaces are closed shells, each
 //! edge of which belongs to as many half-edges in either direction. The vertex is off the surface by more than rounding
-//! errors.
+//! errors. A wall thinner than the tolerance is inside out in the body of a plan, and proves nothing.
 
 use petgraph::unionfind::UnionFind;
 
@@ -36,6 +36,7 @@ fn is_enclosed_by(bodies: &Bodies, inner: usize, outer: usize) -> bool {
     // The exact test for overlaps comes last.
     if !bounds.contains_box(&inner_solid.bounds())
         || !inner_solid.is_closed()
+        || bodies.has_inverted_facets([inner, outer])
         || !bodies.blocks_plainly([inner, outer])
     {
         return false;

@@ -139,14 +139,18 @@ impl Interlocked {
         let sentence = format!("{nothing}{condition}");
         let (heading, evidence) = match self.proof_cells {
             Some(cells) => (
-                if self.path_search == PathSearch::Enclosed {
-                    "stuck: proven for all motions"
-                } else if matches!(self.path_search, PathSearch::Proven { .. }) {
-                    "stuck: proven for all sequences of translations"
-                } else if self.overlapping_pairs.is_empty() {
-                    "stuck: proven for each single translation of a group as one"
-                } else {
-                    "stuck: proven for each single translation of a group as one, with what overlaps as one"
+                match (&self.path_search, self.overlapping_pairs.is_empty()) {
+                    (PathSearch::Enclosed, _) => "stuck: proven for all motions",
+                    (PathSearch::Proven { .. }, true) => {
+                        "stuck: proven for all sequences of translations"
+                    }
+                    (PathSearch::Proven { .. }, false) => {
+                        "stuck: proven for all sequences of translations, with what overlaps as one"
+                    }
+                    (_, true) => "stuck: proven for each single translation of a group as one",
+                    (_, false) => {
+                        "stuck: proven for each single translation of a group as one, with what overlaps as one"
+                    }
                 },
                 format!("This is proven in {cells} cells of the sphere of directions."),
             ),

@@ -1,30 +1,43 @@
-//! Properties of the parts that affect the order and the texts of a plan: identical shapes and fasteners.
+//! Properties of the parts that affect the order and the texts of a plan: identical shapes, fasteners, and tools.
 //!
-//! The preferred order of the fasteners is added to the constraints of the assembly. A step ignores this order if it
-//! lets no part leave alone, so it never keeps a part from leaving. Proofs do not depend on it.
+//! The preferred orders of tools and of fasteners are added to the constraints of the assembly. A step ignores that of
+//! the tools, or both, if it lets no part leave alone, so that no part is kept from leaving. Proofs do not depend on
+//! these orders.
 
+use super::order::base_parts;
 use super::{Leg, Plan};
 use crate::bodies::Bodies;
 use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::fasteners::{FastenerKind, Fasteners, Unscrewing};
 use crate::identical::first_identical_parts;
+use crate::tools::{ToolReach, Tools};
 
 /// Properties of the parts that affect the order of a plan.
 pub(super) struct KnownParts {
     /// For each part, the first part with the same shape.
     pub(super) likes: Vec<usize>,
     pub(super) fasteners: Fasteners,
-    /// The constraints of the assembly with the order that the fasteners demand.
-    pub(super) preferred: Constraints,
+    tools: Tools,
+    /// Pairs of which the first part leaves before the second, a fastener, so that a tool reaches it.
+    tool_pairs: Vec<[usize; 2]>,
+    /// The constraints of the assembly with the order that tools and fasteners demand, and with that of fasteners.
+    pub(super) preferred: [Constraints; 2],
 }
 
 impl KnownParts {
     pub(super) fn new(bodies: &Bodies) -> Result<Self, AssemblyError> {
-        let fasteners = Fasteners::with_holds(bodies)?;
-        let pairs = fasteners.holds().iter().flat_map(|hold| hold.order_pairs(&fasteners));
-        let preferred = bodies.assembly().constraints().with_preferred(&pairs.collect::<Vec<_>>());
-        Ok(Self { likes: first_identical_parts(bodies.assembly()), fasteners, preferred })
+        let (assembly, fasteners) = (bodies.assembly(), Fasteners::with_holds(bodies)?);
+        let held = fasteners.holds().iter().flat_map(|hold| hold.order_pairs(&fasteners));
+        let held: Vec<[usize; 2]> = held.collect();
+        let tools = Tools::find(assembly, &fasteners);
+        let base = base_parts(bodies, &vec![true; bodies.len()], assembly.up(), |_| false);
+        let stays = |own: usize, other: usize| base[other] || held.contains(&[own, other]);
+        let tool_pairs = tools.order_pairs(&fasteners, stays);
+        let by_holds = assembly.constraints().with_preferred(&held);
+        let preferred = [by_holds.with_preferred(&tool_pairs), by_holds];
+        let likes = first_identical_parts(assembly);
+        Ok(Self { likes, fasteners, tools, tool_pairs, preferred })
     }
 
     /// Returns the screws that hold some parts, in increasing order: none of these parts and none of the base.
@@ -40,6 +53,38 @@ impl KnownParts {
         screws.sort_unstable();
         screws.dedup();
         screws
+    }
+
+    /// Returns the parts that stand in the way of the tools for some parts, and those in the way of tools for these, in
+    /// increasing order: none of the base.
+    pub(super) fn obstacles_of(&self, parts: &[usize], is_base: &[bool]) -> Vec<usize> {
+        let mut all = parts.to_vec();
+        let mut at = 0;
+        while at < all.len() {
+            let own = all[at];
+            let before = self.tool_pairs.iter().filter(|[_, second]| *second == own);
+            let mut new: Vec<usize> = before.map(|[first, _]| *first).collect();
+            new.extend(self.screws_of(&[own], is_base));
+            new.retain(|part| !all.contains(part) && !is_base[*part]);
+            all.extend(new);
+            at += 1;
+        }
+        all.retain(|part| !parts.contains(part));
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Returns whether a tool reaches a fastener that leaves alone along the first move of a path.
+    pub(super) fn tool_reach(
+        &self,
+        path: &[Leg],
+        parts: &[usize],
+        present: &[bool],
+    ) -> Option<ToolReach> {
+        let ([part], first) = (parts, path.first()?) else { return None };
+        let is_own = first.parts == parts;
+        is_own.then(|| self.tools.reach(*part, first.direction, |part| present[part])).flatten()
     }
 
     /// Returns a plan with these properties.

@@ -66,10 +66,10 @@ pub(super) struct GroupChoice {
 /// The state by which steps are chosen, for some of the parts.
 pub(super) struct Order<'a> {
     bodies: &'a Bodies<'a>,
-    /// The constraints of the assembly with the preferred order of fasteners.
-    preferred: &'a Constraints,
-    /// Whether the preferred order is ignored.
-    is_relaxed: bool,
+    /// The constraints of the assembly with preferred orders, from the most demanding one to none.
+    preferred: Vec<&'a Constraints>,
+    /// Position of the order that is demanded now.
+    demanded: usize,
     up: DVec3,
     size: f64,
     /// For each part, the first part with the same shape.
@@ -135,8 +135,8 @@ impl<'a> Order<'a> {
         let (last, shortcuts, changed) = (None, Shortcuts::default(), Vec::new());
         Self {
             bodies,
-            preferred: bodies.assembly().constraints(),
-            is_relaxed: false,
+            preferred: vec![bodies.assembly().constraints()],
+            demanded: 0,
             up,
             size,
             likes,
@@ -158,22 +158,26 @@ impl<'a> Order<'a> {
         Self { shortcuts, ..self }
     }
 
-    /// Adds a preferred order to the constraints of the assembly.
-    pub(super) fn with_preferred(self, preferred: &'a Constraints) -> Self {
-        Self { preferred, ..self }
+    /// Adds preferred orders to the constraints of the assembly, from the most demanding one to the least.
+    pub(super) fn with_preferred(self, preferred: &'a [Constraints]) -> Self {
+        let none = self.bodies.assembly().constraints();
+        Self { preferred: preferred.iter().chain([none]).collect(), ..self }
     }
 
-    /// Ignores the preferred order until it is [restored](Self::restore). Returns `false` if it demands nothing of the
-    /// present parts.
+    /// Demands less of the preferred order until it is [restored](Self::restore). Returns `false` if no less demanding
+    /// order differs for the present parts.
     pub(super) fn relax(&mut self) -> bool {
-        let own = self.bodies.assembly().constraints().order_arcs(self.present()).len();
-        self.is_relaxed = self.preferred.order_arcs(self.present()).len() > own;
-        self.is_relaxed
+        let count = |order: &&Constraints| order.order_arcs(self.present()).len();
+        let known = count(&self.constraints());
+        let next = (self.demanded + 1..self.preferred.len())
+            .find(|&level| count(&self.preferred[level]) < known);
+        self.demanded = next.unwrap_or(self.demanded);
+        next.is_some()
     }
 
-    /// Demands the preferred order again.
+    /// Demands the whole preferred order again.
     pub(super) fn restore(&mut self) {
-        self.is_relaxed = false;
+        self.demanded = 0;
     }
 
     /// Returns the mask of present parts.
@@ -187,7 +191,7 @@ impl<'a> Order<'a> {
     }
 
     fn constraints(&self) -> &'a Constraints {
-        if self.is_relaxed { self.bodies.assembly().constraints() } else { self.preferred }
+        self.preferred[self.demanded]
     }
 
     /// Returns the parts that move if a group is separated from the others, in increasing order.

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{HandlingTimes, Plan};
+use super::{HandlingTimes, Plan, Step};
 use crate::csv::{Cell, Table};
 use crate::matrix::ContactMatrix;
 use crate::part::Assembly;
@@ -44,7 +44,8 @@ impl Plan {
 
     /// Returns the steps as CSV, numbered from 1. The columns are the parts, direction, travel, turns, number of
     /// moves, enclosing step, preceding steps, round, and seconds. If there are fasteners, further columns have the
-    /// kind and the size of a single one, and the length, turns and pitch of its unscrewing.
+    /// kind and the size of a single one, the length, turns and pitch of its unscrewing, its tool, and the parts in the
+    /// way of it.
     pub fn to_csv(&self, assembly: &Assembly, times: &HandlingTimes) -> String {
         let mut heads = vec![
             "step",
@@ -70,6 +71,11 @@ impl Plan {
         let numbers = |steps: &[usize]| {
             steps.iter().map(|k| (k + 1).to_string()).collect::<Vec<_>>().join(" ")
         };
+        let in_the_way = |step: &Step| {
+            let reach = step.tool.as_ref();
+            reach.map_or_else(String::new, |reach| assembly.part_names(&reach.blockers).join("; "))
+        };
+        let blockers: Vec<String> = self.steps.iter().map(in_the_way).collect();
         for (k, step) in self.steps.iter().enumerate() {
             let round = rounds.iter().position(|round| round.contains(&k)).unwrap_or(0);
             let parts = assembly.part_names(&step.parts).join("; ");
@@ -101,6 +107,8 @@ impl Plan {
                     Some(own) => [own.length, own.turns(), own.pitch].map(Cell::Number),
                     None => [Cell::Text(""); 3],
                 });
+                cells.push(Cell::Text(step.tool.as_ref().map_or("", |reach| &reach.tool)));
+                cells.push(Cell::Text(&blockers[k]));
             }
             table.push_row(&cells);
         }
@@ -109,8 +117,15 @@ impl Plan {
 }
 
 /// Names of the columns of fasteners.
-const FASTENER_COLUMNS: [&str; 5] =
-    ["fastener", "size", "unscrew_length", "unscrew_turns", "unscrew_pitch"];
+const FASTENER_COLUMNS: [&str; 7] = [
+    "fastener",
+    "size",
+    "unscrew_length",
+    "unscrew_turns",
+    "unscrew_pitch",
+    "tool",
+    "tool_blocked_by",
+];
 
 /// Returns the precedence of all parts as an AND/OR graph, along the directions of a matrix.
 ///

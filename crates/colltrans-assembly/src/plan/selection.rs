@@ -23,6 +23,9 @@ pub struct SelectedRemoval {
     pub others: Vec<usize>,
     /// Those of the others that are screws that hold a selected part. They are removed before it.
     pub fasteners: Vec<usize>,
+    /// Those of the others that stand in the way of the tools for these screws, for selected fasteners, or for one
+    /// another. They are removed before them.
+    pub obstacles: Vec<usize>,
     /// The parts that never move: the fixed ones, or else the largest part that is not selected.
     pub base: Vec<usize>,
     /// Whether it is certain that fewer other parts do not suffice. This covers single moves of any groups along the
@@ -37,8 +40,8 @@ const MAX_SMALLER_PLANS: usize = 8;
 
 /// Computes a plan that removes selected parts.
 ///
-/// The base never moves ([`SelectedRemoval::base`]). Screws that hold a selected part are removed before it, if they can
-/// be removed. Otherwise removes the fewest other parts that suffice in single moves along the directions of the matrix.
+/// The base never moves ([`SelectedRemoval::base`]). Screws that hold a selected part are removed before it, and before
+/// them the parts in the way of their tools, if they can be removed. Otherwise removes the fewest other parts that suffice in single moves along the directions of the matrix.
 /// If that is any part, searches for several moves that remove the selected parts alone, at first of these parts only,
 /// then with others that move aside and return, and then for each other part in turn whether it may stay. If no set
 /// suffices, or the selected parts leave only inside others that hold them, computes a plan of all parts, keeps the
@@ -86,12 +89,19 @@ pub fn remove<'a>(
             bodies.len(),
         )
     };
-    let (mut plan, mut single) = plan_of(&[&parts[..], &screws].concat())?;
+    let mut obstacles = known.obstacles_of(&[&parts[..], &screws].concat(), &is_base);
+    obstacles.retain(|part| !screws.contains(part));
     let mut fasteners = screws;
-    if !fasteners.is_empty() && !plan.takes_out(&[&parts[..], &fasteners].concat()) {
-        // The screws cannot be removed, so the selected parts leave without them.
-        (plan, single) = plan_of(&parts)?;
-        fasteners.clear();
+    let (mut plan, mut single) = plan_of(&[&parts[..], &fasteners, &obstacles].concat())?;
+    // What cannot be removed stays: first the parts in the way of tools, then the screws.
+    for stays in [true, false] {
+        let wanted = [&parts[..], &fasteners, &obstacles].concat();
+        let more = if stays { &mut obstacles } else { &mut fasteners };
+        if more.is_empty() || plan.takes_out(&wanted) {
+            continue;
+        }
+        more.clear();
+        (plan, single) = plan_of(&[&parts[..], &fasteners, &obstacles].concat())?;
     }
     let (gone, mut others): (Vec<usize>, Vec<usize>) =
         plan.removed_parts().partition(|part| parts.contains(part));
@@ -103,6 +113,7 @@ pub fn remove<'a>(
         parts,
         others,
         fasteners,
+        obstacles,
         base,
         is_minimal: least,
         is_complete: out,
@@ -275,6 +286,10 @@ impl SelectedRemoval {
             count if count == self.others.len() => ", screwed out first".to_owned(),
             _ => format!(", of which {} are screwed out first", names(&self.fasteners)),
         };
-        format!("{wanted}: {others} ({}){screws}; {least}", names(&self.others))
+        let room = match self.obstacles.len() {
+            0 => String::new(),
+            _ => format!("; {} first, to make room for the tools", names(&self.obstacles)),
+        };
+        format!("{wanted}: {others} ({}){screws}{room}; {least}", names(&self.others))
     }
 }

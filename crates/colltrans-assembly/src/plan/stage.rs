@@ -162,6 +162,17 @@ impl Plan {
         all
     }
 
+    /// Returns descriptions of the tools of a stage, each once.
+    pub fn describe_tools(&self, assembly: &Assembly, stage: &Range<usize>) -> Vec<String> {
+        let names = |parts: &[usize]| assembly.part_names(parts).join(", ");
+        let mut all: Vec<String> = Vec::new();
+        for step in &self.steps[stage.clone()] {
+            let text = step.tool.as_ref().map(|reach| reach.describe(names));
+            all.extend(text.filter(|text| !all.contains(text)));
+        }
+        all
+    }
+
     /// Returns the common direction of the steps of a stage, or `None` if their directions differ.
     pub fn stage_direction(&self, stage: &Range<usize>) -> Option<DVec3> {
         let first = self.steps[stage.start].direction;

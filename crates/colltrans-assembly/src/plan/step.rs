@@ -9,6 +9,7 @@ use glam::{DQuat, DVec3};
 use super::ToleratedContact;
 use crate::fasteners::Unscrewing;
 use crate::part::Assembly;
+use crate::tools::ToolReach;
 
 /// Maximum number of ignored pairs that are named for a step.
 const MAX_NAMED: usize = 4;
@@ -134,6 +135,9 @@ pub struct Step {
     /// The turns of a screw or nut at the beginning of its first move, if its thread is not modelled or has no role.
     /// The proof of the move does not contain the turns.
     pub unscrewing: Option<Unscrewing>,
+    /// Whether a hand tool reaches the fastener that the step removes, among the parts that remain. `None` if the step
+    /// removes no fastener that needs a tool of the [table](crate::tools), or not along its axis.
+    pub tool: Option<ToolReach>,
     /// The reversed moves of parts that made room, after the group has left, and of parts of the group that left with
     /// a relative displacement. After each step all remaining parts are in their initial poses.
     pub return_legs: Vec<Leg>,

@@ -258,6 +258,9 @@ fn stage_facts(r: &Report, stage: &Range<usize>) -> Markup {
             @for turns in r.f.plan.describe_unscrewing(stage, |turns| turns.describe(|x| r.words.length_text(x))) {
                 div { dt { "Thread" } dd { (sentence(&turns)) } }
             }
+            @for tool in r.f.plan.describe_tools(r.f.bodies.assembly(), stage) {
+                div { dt { "Reach" } dd { (sentence(&tool)) } }
+            }
             div { dt { "Needs" } dd { @if after.is_empty() { "no earlier step" } @else { (step_list(&after)) } } }
             div { dt { "Round" } dd { (number_runs(&rounds)) " of " (r.rounds.iter().max().map_or(0, |k| k + 1)) } }
             div { dt { "Time, about" } dd { (time_text(r.seconds[stage.clone()].iter().sum())) } }

@@ -104,12 +104,12 @@ fn plain_screw_is_unscrewed_by_the_length_in_its_hole() {
     assert_eq!(with - without, times.thread);
     let csv = plan.to_csv(&assembly, &times);
     let mut lines = csv.lines();
-    assert!(
-        lines.next().unwrap().ends_with("fastener,size,unscrew_length,unscrew_turns,unscrew_pitch")
-    );
+    let heads = "fastener,size,unscrew_length,unscrew_turns,unscrew_pitch,tool,tool_blocked_by";
+    assert!(lines.next().unwrap().ends_with(heads));
     let row = lines.next().unwrap();
-    assert!(row.contains(",screw,M8 x 22,") && row.ends_with(",1.25"), "{row}");
-    assert!(lines.next().unwrap().ends_with(",,,,"));
+    assert!(row.contains(",screw,M8 x 22,"), "{row}");
+    assert!(row.ends_with(",1.25,hex driver 6 x 150 (socket of ISO 4762),"), "{row}");
+    assert!(lines.next().unwrap().ends_with(",,,,,,"));
     assert!(!other.to_csv(&unnamed, &times).contains("fastener"));
     let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
     let json = record::plan_json(&bodies, &plan);

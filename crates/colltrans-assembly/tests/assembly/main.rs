@@ -24,5 +24,6 @@ mod roles;
 mod several;
 mod split;
 mod stand;
+mod tools;
 mod turning;
 mod validation;

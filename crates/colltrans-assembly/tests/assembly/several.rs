@@ -567,6 +567,16 @@ fn enclosed_parts_are_proven_to_stay() {
     assert!(plan.interlocked.is_empty(), "{plan:?}");
     let (_, plan) = told(vec![small("cube", 0.0), hollow()]);
     assert_eq!(plan.interlocked[0].path_search, PathSearch::Enclosed);
+    // With a tolerance above the thickness, nothing is left of the wall.
+    let wide = blocks("cube", &[[[0.1; 3], [1.9; 3]]]);
+    let assembly = Assembly::new(vec![wide, hollow()]).unwrap();
+    let path_search = |tolerance: f64| {
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance)).unwrap();
+        let plan = crate::common::planned(&bodies, PlanOptions::default());
+        plan.interlocked.first().map(|stuck| stuck.path_search.clone())
+    };
+    assert_eq!(path_search(0.5), Some(PathSearch::Enclosed));
+    assert_ne!(path_search(1.2), Some(PathSearch::Enclosed));
     // A box of walls that has a window is not closed.
     let (json, plan) = told(vec![small("cube", 0.1), blocks("shell", &walls[..5])]);
     assert!(plan.interlocked.is_empty(), "{plan:?}");

@@ -529,8 +529,9 @@ const JSON_ASSEMBLY: &str = r#"Answer of assembly:
      "path": [{"parts", "direction", "travel", "turn": {"point", "axis", "turns", "pitch", "phase",
        "aside", "words", "proof": {"tolerance", "pairs"} or "not_proven"}}], "back", "within",
      "ignored", "passed", "surfaces", "subassembly",
-     "unscrew": {"length", "turns", "pitch", "standard", "words"}}],
-   "wanted" (of --remove): {"parts", "others", "fasteners", "least", "out"}, "rounds": [...],
+     "unscrew": {"length", "turns", "pitch", "standard", "words"},
+     "tool": {"name", "reaches", "blockers", "words"}}],
+   "wanted" (of --remove): {"parts", "others", "fasteners", "obstacles", "least", "out"}, "rounds": [...],
    "assembly": [{"step", "after"}], "seconds": [...], "left": [...],
    "stuck": [{"parts", "because", "directions", "proof": {"proven": cells} or {"asked": directions},
      "moves": {"effort", "directions", "places", "complete"} or {"proven": cells} or

@@ -371,6 +371,9 @@ fn push_stage(text: &mut String, findings: &Analysis, stage: &Range<usize>) {
     for turns in findings.plan.describe_unscrewing(stage, Unscrewing::words) {
         let _ = writeln!(text, "     {}", escape_line(turns));
     }
+    for tool in findings.plan.describe_tools(assembly, stage) {
+        let _ = writeln!(text, "     {}", escape_line(tool));
+    }
     for ignored in steps.iter().filter_map(|step| step.describe_ignored(assembly)) {
         let _ = writeln!(text, "     {}", escape_line(ignored));
     }

@@ -159,7 +159,16 @@ pub fn contacts_json(assembly: &Assembly, matrix: &ContactMatrix, direction: usi
 /// | `stuck` | the interlocked groups |
 /// | `wanted` | the requested removal, if any |
 pub fn plan_json(bodies: &Bodies, plan: &Plan) -> Value {
-    let steps: Vec<Value> = plan.steps.iter().map(|s| step_json(bodies.assembly(), s)).collect();
+    let steps = plan.steps.iter().enumerate().map(|(k, step)| {
+        let mut object = step_json(bodies.assembly(), step);
+        let names = |parts: &[usize]| bodies.assembly().part_names(parts).join(", ");
+        let reasons = plan.unproven_reasons(bodies, &(k..k + 1), names);
+        if !reasons.is_empty() {
+            object["unproven"] = json!(reasons);
+        }
+        object
+    });
+    let steps: Vec<Value> = steps.collect();
     let stuck: Vec<Value> = plan.interlocked.iter().map(|s| stuck_json(bodies, s)).collect();
     let names = |parts: &[usize]| json!(bodies.assembly().part_names(parts));
     let stages = plan.stages().into_iter().map(|stage| {

@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::{Leg, Plan, Step, ToleratedContact};
+use crate::bodies::Bodies;
 use crate::fasteners::{FastenerKind, Unscrewing};
 use crate::identical::{common_name, group_identical_pairs};
 use crate::part::Assembly;
@@ -160,6 +161,37 @@ impl Plan {
             all.extend(text.filter(|text| !all.contains(text)));
         }
         all
+    }
+
+    /// Returns the reasons why the moves of some steps are not proven for the parts as drawn: open surfaces, and
+    /// overlapping parts that move as one. `names` joins the names of parts.
+    pub fn unproven_reasons(
+        &self,
+        bodies: &Bodies,
+        steps: &Range<usize>,
+        names: impl Fn(&[usize]) -> String,
+    ) -> Vec<String> {
+        let (steps, mut reasons) = (&self.steps[steps.clone()], Vec::new());
+        let mut surfaces: Vec<usize> =
+            steps.iter().flat_map(|step| step.surfaces.iter().copied()).collect();
+        surfaces.sort_unstable();
+        surfaces.dedup();
+        if !surfaces.is_empty() {
+            reasons.push(format!("open surfaces have no known inside: {}", names(&surfaces)));
+        }
+        let moves_as_one = |pair: &&[usize; 2]| {
+            steps.iter().any(|step| pair.iter().all(|part| step.parts.contains(part)))
+        };
+        let mut overlaps = bodies.overlapping_pairs().iter().filter(moves_as_one);
+        if let Some(first) = overlaps.next() {
+            let more = match overlaps.count() {
+                0 => String::new(),
+                1 => " and 1 more pair".into(),
+                count => format!(" and {count} more pairs"),
+            };
+            reasons.push(format!("overlapping parts move as one: {}{more}", names(first)));
+        }
+        reasons
     }
 
     /// Returns descriptions of the tools of a stage, each once.

@@ -261,6 +261,9 @@ fn stage_facts(r: &Report, stage: &Range<usize>) -> Markup {
             @for tool in r.f.plan.describe_tools(r.f.bodies.assembly(), stage) {
                 div { dt { "Reach" } dd { (sentence(&tool)) } }
             }
+            @for reason in r.f.plan.unproven_reasons(r.f.bodies, stage, |parts| r.words.name_list(parts)) {
+                div { dt { "Not proven, because" } dd { (reason) } }
+            }
             div { dt { "Needs" } dd { @if after.is_empty() { "no earlier step" } @else { (step_list(&after)) } } }
             div { dt { "Round" } dd { (number_runs(&rounds)) " of " (r.rounds.iter().max().map_or(0, |k| k + 1)) } }
             div { dt { "Time, about" } dd { (time_text(r.seconds[stage.clone()].iter().sum())) } }

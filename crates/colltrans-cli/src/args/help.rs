@@ -530,7 +530,7 @@ const JSON_ASSEMBLY: &str = r#"Answer of assembly:
        "aside", "words", "proof": {"tolerance", "pairs"} or "not_proven"}}], "back", "within",
      "ignored", "passed", "surfaces", "subassembly",
      "unscrew": {"length", "turns", "pitch", "standard", "words"},
-     "tool": {"name", "reaches", "blockers", "words"}}],
+     "tool": {"name", "reaches", "blockers", "words"}, "unproven": [why]}],
    "wanted" (of --remove): {"parts", "others", "fasteners", "obstacles", "least", "out"}, "rounds": [...],
    "assembly": [{"step", "after"}], "seconds": [...], "left": [...],
    "stuck": [{"parts", "because", "directions", "proof": {"proven": cells} or {"asked": directions},
@@ -556,7 +556,8 @@ Findings, the worst first:
   interfering  the parts overlap, also after each is shrunk by half the tolerance; `depth` bounds the
                shortest translation that separates them, `translation` of the first part is the
                shortest one found
-  contained    one part lies inside the other, and their surfaces have no common point
+  contained    one part lies inside the other; their surfaces have isolated points and edges in
+               common at most
   touching     they are at most the tolerance apart, or the shrunk parts do not overlap, or their role
                permits it. Sharp tips are shrunk by more: up to 32 times as deep as the tolerance
   apart        they are nearer than the clearance
@@ -572,12 +573,14 @@ With --json one object:
           parts that touch satisfy them
   counts  {\"examined\", \"ignored\", \"interfering\", \"contained\", \"touching\", \"near\", \"violations\"}
   pairs   [{\"parts\": [a, b], \"finding\", \"violation\", \"clearance\", \"tolerance\", \"role\"}] with
-          \"distance\", \"points\" (of touching, apart) or \"depth\", \"translation\", \"volume\", \"box\",
-          \"least_tolerance\", \"point\", \"inner\" (of contained). Lengths and volumes are proven [lower, upper]
-          \"wall\", \"wall_points\" (of contained): the distance of both surfaces, and their nearest points
-          \"open\": the parts with open shells, whose volume and containment are those of closed shells
-          With --proofs also \"proofs\", the file of each claim (\"distance\", \"depth\", \"common_part\"),
-          and \"unproven\", the reason why a claim has no proof
+          - of touching and apart: \"distance\", \"points\";
+          - of the others: \"depth\", \"translation\", \"volume\", \"box\", \"least_tolerance\", \"point\";
+          - of contained also: \"inner\", \"wall\" (the distance of both surfaces), \"wall_points\" (their
+            nearest points);
+          - \"open\": the parts with open shells, whose volume and containment are those of closed shells;
+          - with --proofs: \"proofs\", the file of each claim (\"distance\", \"depth\", \"common_part\"), and
+            \"unproven\", the reason why a claim has no proof.
+          Depths, distances, walls and volumes are proven [lower, upper].
 
 Examples:
   Is anything nearer than 0.5, or interfering? Bolted faces may touch.

@@ -388,28 +388,8 @@ fn push_stage(text: &mut String, findings: &Analysis, stage: &Range<usize>) {
             let _ = writeln!(text, "     {}: {}", names(&step.parts), escape_line(turn.describe()));
         }
     }
-    let mut surfaces: Vec<usize> = steps.iter().flat_map(|s| s.surfaces.iter().copied()).collect();
-    surfaces.sort_unstable();
-    surfaces.dedup();
-    if !surfaces.is_empty() {
-        let surfaces = names(&surfaces);
-        let _ = writeln!(
-            text,
-            "     not proven, because open surfaces have no known inside: {surfaces}"
-        );
-    }
-    let joined = |pair: &[usize; 2]| {
-        steps.iter().any(|step| pair.iter().all(|part| step.parts.contains(part)))
-    };
-    let overlaps = findings.bodies.overlapping_pairs();
-    if let Some(first) = overlaps.iter().find(|pair| joined(pair)) {
-        let more = match overlaps.iter().filter(|pair| joined(pair)).count() {
-            1 => String::new(),
-            count => format!(" and {}", count_text(count - 1, "more pair", "more pairs")),
-        };
-        let first = names(first);
-        let _ =
-            writeln!(text, "     not proven, because overlapping parts move as one: {first}{more}");
+    for reason in findings.plan.unproven_reasons(findings.bodies, stage, names) {
+        let _ = writeln!(text, "     not proven, because {reason}");
     }
 }
 

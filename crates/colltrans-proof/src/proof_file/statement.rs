@@ -27,6 +27,7 @@ use colltrans_solid::penetration::{
 };
 use colltrans_solid::solve::contact::SolidContact;
 use colltrans_solid::solve::nearest::SolidNear;
+use colltrans_solid::solve::overlap::Overlap;
 
 /// Statement about the free directions of a solid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -312,10 +313,20 @@ pub(super) fn rename_triangles(
     near: SolidNear,
     name: impl Fn(usize, u32) -> Option<u32>,
 ) -> Option<SolidNear> {
-    let SolidNear::Points { triangles: [p, q], weights, distance } = near else {
-        return Some(near);
-    };
-    Some(SolidNear::Points { triangles: [name(0, p)?, name(1, q)?], weights, distance })
+    Some(match near {
+        SolidNear::Points { triangles: [p, q], weights, distance } => {
+            SolidNear::Points { triangles: [name(0, p)?, name(1, q)?], weights, distance }
+        }
+        SolidNear::Meeting(Overlap::Facets(p, q)) => {
+            SolidNear::Meeting(Overlap::Facets(name(0, p)?, name(1, q)?))
+        }
+        SolidNear::Meeting(Overlap::MovingInside(p)) => {
+            SolidNear::Meeting(Overlap::MovingInside(name(0, p)?))
+        }
+        SolidNear::Meeting(Overlap::FixedInside(q)) => {
+            SolidNear::Meeting(Overlap::FixedInside(name(1, q)?))
+        }
+    })
 }
 
 /// Two solids, and the query along a direction.

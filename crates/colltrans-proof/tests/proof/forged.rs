@@ -80,6 +80,32 @@ fn near_points_in_scene_are_in_facets_of_file() {
     }
 }
 
+/// A meeting is stated for the facets of the file, in whatever order they are.
+#[test]
+fn meeting_is_in_facets_of_file() {
+    let mut fractions = start_fractions();
+    let step = [[4.0, 2.0, 1.0], [2.0, 2.0, 3.0]].map(|high| {
+        ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::from_array(high)).expect("a cuboid")
+    });
+    let step = Solid::from_pieces(&step).expect("a step");
+    let pair = Pair::new(step.at(pose(3.5, 0.5, 0.25)), step.at(Pose::IDENTITY)).expect("a pair");
+    let proof = ProofFile::of_solid_distance(&pair, [&[&step], &[&step]], None).expect("a proof");
+    let file: Value = serde_json::from_str(&proof.to_json()).expect("JSON");
+    assert_holds(&file, &mut fractions);
+    let named = "/statement/solid_distance/near/meeting/facets";
+    let facets = file.pointer(named).and_then(Value::as_array).expect("facets").clone();
+    for body in [0, 1] {
+        let triangles = format!("/bodies/{body}/pieces/0/triangles");
+        let mut other = file.clone();
+        let all = other.pointer_mut(&triangles).and_then(Value::as_array_mut).expect("triangles");
+        all.reverse();
+        let last = all.len() as u64 - 1;
+        let number = facets[body].as_u64().expect("a number");
+        *other.pointer_mut(&format!("{named}/{body}")).expect("a facet") = json!(last - number);
+        assert_holds(&other, &mut fractions);
+    }
+}
+
 #[test]
 fn margin_beyond_shadow_distance_is_rejected_for_tilted_normal() {
     let mut fractions = start_fractions();

@@ -41,12 +41,11 @@ pub fn cylinder_axes(solid: &Solid) -> Vec<(f64, DVec3)> {
     edges.sort_by(|x, y| y.0.length_squared().total_cmp(&x.0.length_squared()));
     let total_length: f64 = edges.iter().map(|e| e.0.length()).sum();
     let mut bundles: Vec<Bundle> = Vec::new();
+    let parallel = PARALLEL_ANGLE.cos();
     for (edge, turn) in edges {
         let length = edge.length();
         let axis = edge / length;
-        let near = |b: &&mut Bundle| {
-            angle_between(b.axis, axis).min(angle_between(b.axis, -axis)) < PARALLEL_ANGLE
-        };
+        let near = |b: &&mut Bundle| b.axis.dot(axis).abs() > parallel;
         let count = bundles.len();
         match bundles.iter_mut().find(near) {
             Some(bundle) => {

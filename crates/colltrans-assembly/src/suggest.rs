@@ -23,7 +23,7 @@ use crate::inertia;
 use crate::part::{Assembly, Part};
 use crate::roles::{PairFit, Role};
 use crate::start::{Overlap, Start};
-use crate::threads::{RoundContact, Thread};
+use crate::threads::{RoundContacts, Thread, round_axes};
 
 /// Words in the names of soft parts.
 const SOFT_NAMES: [&str; 8] =
@@ -63,10 +63,17 @@ pub fn suggest_fits(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
         .filter(|o| lacks_fit(o.parts) && !snaps.iter().any(|snap| snap.parts == o.parts))
         // Pairs that only violate the minimum gap do not overlap.
         .filter(|o| !matches!(bodies.fit(), Fit::MinGap(_)) || o.depth != Some(0.0));
-    candidates
-        .filter_map(|overlap| suggest_fit(bodies, &rings, overlap))
-        .chain(snaps.clone())
-        .collect()
+    let candidates: Vec<&Overlap> = candidates.collect();
+    let used: BTreeSet<usize> = candidates.iter().flat_map(|overlap| overlap.parts).collect();
+    let used: Vec<usize> = used.into_iter().collect();
+    let axes = |&part: &usize| (part, round_axes(bodies.assembly().parts()[part].solid()));
+    let axes: BTreeMap<usize, Vec<DVec3>> = used.par_iter().map(axes).collect();
+    let found = candidates.par_iter().filter_map(|overlap| {
+        let own = overlap.parts.map(|part| axes[&part].clone()).concat();
+        suggest_fit(bodies, &rings, overlap, &own)
+    });
+    let found: Vec<Suggestion> = found.collect();
+    found.into_iter().chain(snaps.iter().cloned()).collect()
 }
 
 /// Finds rings by their names, each with the part in whose groove it lies. This part stops the ring in both
@@ -121,7 +128,13 @@ fn is_called(part: &Part, words: &[&str]) -> bool {
     words.iter().any(|word| name.contains(word))
 }
 
-fn suggest_fit(bodies: &Bodies, rings: &BTreeSet<usize>, overlap: &Overlap) -> Option<Suggestion> {
+/// Suggests a fit for an overlap of parts that may be round about some axes.
+fn suggest_fit(
+    bodies: &Bodies,
+    rings: &BTreeSet<usize>,
+    overlap: &Overlap,
+    axes: &[DVec3],
+) -> Option<Suggestion> {
     let parts = overlap.parts;
     let of = parts.map(|k| &bodies.assembly().parts()[k]);
     let solids = of.map(Part::solid);
@@ -138,14 +151,13 @@ fn suggest_fit(bodies: &Bodies, rings: &BTreeSet<usize>, overlap: &Overlap) -> O
         );
     }
     let screwed = !parts.iter().any(|part| rings.contains(part));
-    let thread = screwed.then(|| find_helix(solids)).flatten();
-    if let Some((thread, pitch)) =
-        thread.filter(|(thread, _)| thread.is_surrounded(solids[1 - thread.screw]))
-    {
+    let contacts = RoundContacts::find(solids, axes);
+    let thread = screwed.then(|| contacts.surrounded_thread()).flatten();
+    if let Some((thread, pitch)) = thread {
         return with_fit(Some(Role::Thread), None, describe_helix(&thread, pitch));
     }
     let tolerance = Some(tolerance?);
-    if let Some(round) = RoundContact::of(solids) {
+    if let Some(round) = contacts.longest() {
         let by = round.interference();
         let why =
             format!("one lies around the other, at a radius of {}", short_number(round.radius()));

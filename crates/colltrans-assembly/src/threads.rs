@@ -15,6 +15,7 @@ mod surface;
 
 use colltrans::Solid;
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 use crate::boxes::value_range;
 use crate::{cylinders, inertia};
@@ -53,12 +54,20 @@ pub struct Thread {
     pub pitch: Option<f64>,
 }
 
+/// Sine up to which two directions are searched as one.
+const SAME_DIRECTION: f64 = 1e-3;
+/// Sine up to which a refined axis is the same.
+const SAME_AXIS: f64 = 1e-6;
+
 impl Thread {
     /// Detects the thread of two parts; `None` if they do not form one. Of several axes, prefers one with a
     /// helix, then the one with the largest ratio of hole and crest.
     pub fn detect(parts: [&Solid; 2]) -> Option<Self> {
-        let mut all: Vec<Self> =
-            round_contacts(parts).filter_map(|round| round.to_thread(parts)).collect();
+        RoundContacts::find(parts, &parts.map(round_axes).concat()).thread()
+    }
+
+    /// Returns the best of some threads.
+    fn best(mut all: Vec<Self>) -> Option<Self> {
         // About any other axis, the hole is narrower and the crest wider.
         all.sort_by(|a, b| b.radius_ratio().total_cmp(&a.radius_ratio()));
         all.iter().find(|thread| thread.pitch.is_some()).or(all.first()).copied()
@@ -69,22 +78,9 @@ impl Thread {
         self.radii[0] / self.radii[1]
     }
 
-    /// Checks whether the other part surrounds the screw: within the radius of the crest, it has facets with
-    /// vertices in all four quadrants. This excludes a wheel driven by a worm.
+    /// Checks whether the other part surrounds the screw.
     pub(crate) fn is_surrounded(&self, other: &Solid) -> bool {
-        let [point, axis] = self.axis;
-        let flat = axial_projection(axis);
-        let middle = flat(point);
-        let mut sides = [false; 4];
-        for t in other.triangles() {
-            let corners = t.map(|v| flat(other.vertices()[v as usize]));
-            if triangle_distance(middle, corners) <= self.radii[1] {
-                for out in corners.map(|corner| corner - middle) {
-                    sides[usize::from(out.x < 0.0) + 2 * usize::from(out.y < 0.0)] = true;
-                }
-            }
-        }
-        sides == [true; 4]
+        surrounds(other, self.axis, self.radii[1])
     }
 
     /// Returns the screw with its thread moved inward to the hole; `None` if the result is not the surface of
@@ -124,14 +120,6 @@ pub struct RoundContact {
 }
 
 impl RoundContact {
-    /// Detects one part around another one with an overlap smaller than that of a thread; `None` if there is
-    /// none. Of several axes, returns the one with the longest contact relative to the radius.
-    pub fn of(parts: [&Solid; 2]) -> Option<Self> {
-        let all =
-            round_contacts(parts).filter(|round| round.radii[2] < MIN_CREST_RATIO * round.radii[0]);
-        all.max_by(|a, b| (a.length / a.radii[0]).total_cmp(&(b.length / b.radii[0])))
-    }
-
     /// Returns the radius of the inner part.
     pub const fn radius(&self) -> f64 {
         self.radii[2]
@@ -262,30 +250,84 @@ impl RoundContact {
     }
 }
 
-/// Iterates over the contacts of one part around the other, for all axes of cylinders and all principal axes
-/// of both parts.
-fn round_contacts(parts: [&Solid; 2]) -> impl Iterator<Item = RoundContact> {
-    let found = parts.into_iter().flat_map(|part| {
-        let cylinders = cylinders::cylinder_axes(part).into_iter().map(|(_, axis)| axis);
-        cylinders.chain(inertia::principal_axes(part)).collect::<Vec<_>>()
-    });
-    let mut axes: Vec<DVec3> = Vec::new();
-    for axis in found {
-        if !axes.iter().any(|known| known.cross(axis).length() < 1e-3) {
-            axes.push(axis);
+/// Returns the directions of the axes about which a solid may be round: those of its cylinders and its principal axes.
+pub(crate) fn round_axes(solid: &Solid) -> Vec<DVec3> {
+    let cylinders = cylinders::cylinder_axes(solid).into_iter().map(|(_, axis)| axis);
+    cylinders.chain(inertia::principal_axes(solid)).collect()
+}
+
+/// Checks whether a solid surrounds an axis: within a radius, it has facets with vertices in all four quadrants. This
+/// excludes a wheel driven by a worm.
+fn surrounds(solid: &Solid, [point, axis]: [DVec3; 2], radius: f64) -> bool {
+    let flat = axial_projection(axis);
+    let middle = flat(point);
+    let mut sides = [false; 4];
+    for t in solid.triangles() {
+        let corners = t.map(|v| flat(solid.vertices()[v as usize]));
+        if triangle_distance(middle, corners) <= radius {
+            for out in corners.map(|corner| corner - middle) {
+                sides[usize::from(out.x < 0.0) + 2 * usize::from(out.y < 0.0)] = true;
+            }
         }
     }
-    axes.into_iter().flat_map(move |axis| {
-        let contacts = |inner| {
-            let about = RoundContact::about_direction(parts, inner, axis);
+    sides == [true; 4]
+}
+
+/// The contacts of two parts of which one surrounds the other.
+pub(crate) struct RoundContacts<'a> {
+    parts: [&'a Solid; 2],
+    contacts: Vec<RoundContact>,
+}
+
+impl<'a> RoundContacts<'a> {
+    /// Finds the contacts of two parts about some directions, the [round axes](round_axes) of both.
+    pub(crate) fn find(parts: [&'a Solid; 2], axes: &[DVec3]) -> Self {
+        let mut distinct: Vec<DVec3> = Vec::new();
+        for axis in axes {
+            if !distinct.iter().any(|known| known.cross(*axis).length() < SAME_DIRECTION) {
+                distinct.push(*axis);
+            }
+        }
+        let about = |(axis, inner): (DVec3, usize)| {
+            let first = RoundContact::about_direction(parts, inner, axis);
             // The principal axes of a threaded part differ slightly from the axis of the thread.
-            let better = about.as_ref().and_then(|round| round.refined_direction(parts));
-            about
-                .into_iter()
-                .chain(better.and_then(|axis| RoundContact::about_direction(parts, inner, axis)))
+            let better = first.as_ref().and_then(|round| round.refined_direction(parts));
+            let better = better.filter(|better| better.cross(axis).length() > SAME_AXIS);
+            let better = better.and_then(|axis| RoundContact::about_direction(parts, inner, axis));
+            first.into_iter().chain(better)
         };
-        contacts(0).chain(contacts(1)).collect::<Vec<_>>()
-    })
+        let pairs = distinct.into_iter().flat_map(|axis| [(axis, 0), (axis, 1)]);
+        Self { parts, contacts: pairs.flat_map(about).collect() }
+    }
+
+    /// Returns the thread of the parts; `None` if they do not form one.
+    fn thread(&self) -> Option<Thread> {
+        let to_thread = |round: &RoundContact| round.to_thread(self.parts);
+        Thread::best(self.contacts.par_iter().filter_map(to_thread).collect())
+    }
+
+    /// Returns the thread of a screw that the other part surrounds, and its pitch; `None` if there is none.
+    pub(crate) fn surrounded_thread(&self) -> Option<(Thread, f64)> {
+        let other = |screw: usize| self.parts[1 - screw];
+        let to_thread = |round: &RoundContact| {
+            let crest = round.radii[2] * (1.0 + CREST_MARGIN);
+            let may_be = round.radii[2] >= MIN_CREST_RATIO * round.radii[0]
+                && surrounds(other(round.inner), round.axis, crest);
+            let thread = may_be.then(|| round.to_thread(self.parts)).flatten()?;
+            (thread.pitch.is_some() && thread.is_surrounded(other(thread.screw))).then_some(thread)
+        };
+        let best = Thread::best(self.contacts.par_iter().filter_map(to_thread).collect())?;
+        Some((best, best.pitch?))
+    }
+
+    /// Returns one part around the other one with an overlap smaller than that of a thread; `None` if there is none. Of
+    /// several axes, returns the one with the longest contact relative to the radius.
+    pub(crate) fn longest(&self) -> Option<RoundContact> {
+        let all = self.contacts.iter();
+        let is_smaller = |round: &&RoundContact| round.radii[2] < MIN_CREST_RATIO * round.radii[0];
+        let share = |round: &RoundContact| round.length / round.radii[0];
+        all.filter(is_smaller).max_by(|a, b| share(a).total_cmp(&share(b))).copied()
+    }
 }
 
 /// Checks whether a solid is rotationally symmetric about an axis, apart from its tessellation. The range along the

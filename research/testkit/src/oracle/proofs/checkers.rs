@@ -25,10 +25,15 @@ impl Verdict {
         matches!(self, Self::Holds | Self::HoldsPartly)
     }
 
-    /// Checks whether the library rejects the order or the tree of a body's facets, because it accepts only its
-    /// own.
-    pub fn is_about_a_tree(&self) -> bool {
-        matches!(self, Self::Refused(why) if why.contains("differ from those that are rebuilt from its facets"))
+    /// Checks whether the library rejects what `check.py` does not use, by its specification: the order or the tree
+    /// of a body's facets, of which it accepts only its own, a cover, or the orientation of facets of an open piece.
+    pub fn is_about_unused_data(&self) -> bool {
+        const REASONS: [&str; 3] = [
+            "differ from those that are rebuilt from its facets",
+            "of the cover does not hold",
+            "edges have facets with inconsistent orientations",
+        ];
+        matches!(self, Self::Refused(why) if REASONS.iter().any(|reason| why.contains(reason)))
     }
 }
 

@@ -225,7 +225,7 @@ impl<'a> Campaign<'a> {
                 None
             }
             (false, true)
-                if library.is_about_a_tree()
+                if library.is_about_unused_data()
                     || file.as_ref().is_some_and(|file| self.is_rounded(file)) =>
             {
                 self.tally.count("rounded");

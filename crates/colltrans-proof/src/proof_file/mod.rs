@@ -286,7 +286,8 @@ impl ProofFile {
     /// has the meaning that it has for [`Self::of_solids`].
     ///
     /// # Errors
-    /// Returns the errors of the query, and an error for a body that cannot be rebuilt from its own facets.
+    /// Returns the errors of the query, and an error for a body that cannot be rebuilt from its own facets. One that is so
+    /// flat that rounding decides the sign of its volume may be reversed.
     pub fn of_solid_common_part(
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
@@ -295,6 +296,9 @@ impl ProofFile {
         let made = RebuiltSolids::rebuild(pieces, [pair.moving(), pair.fixed()])?;
         let [moving, fixed] = made.solids()?;
         let poses = [pair.moving_pose(), pair.fixed_pose()];
+        if let Some(body) = [moving, fixed].iter().position(|made| made.report().turned() > 0) {
+            return Err(ProofFileError::Changed { body });
+        }
         let again = Pair::new(moving.at(poses[0]), fixed.at(poses[1]))?;
         let proof = again.certified_common_part(options)?;
         let statement =

@@ -32,6 +32,8 @@ pub struct Part {
     defects: Vec<String>,
     chord_error: Option<f64>,
     colour: Option<[f64; 3]>,
+    material: Option<String>,
+    density: Option<f64>,
     last_digits: f64,
     is_coarse: bool,
 }
@@ -86,6 +88,8 @@ impl Part {
             defects,
             chord_error: None,
             colour: None,
+            material: None,
+            density: None,
             last_digits: pieces.iter().map(Piece::last_digits).fold(0.0, f64::max),
             is_coarse: pieces.iter().any(Piece::is_coarse),
         })
@@ -108,6 +112,18 @@ impl Part {
     #[must_use]
     pub fn with_colour(self, colour: Option<[f64; 3]>) -> Self {
         Self { colour, ..self }
+    }
+
+    /// Returns the part with the name of its material; `None` if that is unknown.
+    #[must_use]
+    pub fn with_material(self, material: Option<String>) -> Self {
+        Self { material, ..self }
+    }
+
+    /// Returns the part with a density in kilograms per cubic metre; `None` if that is unknown.
+    #[must_use]
+    pub fn with_density(self, density: Option<f64>) -> Self {
+        Self { density, ..self }
     }
 
     /// Returns the name, which is unique in an assembly.
@@ -151,6 +167,16 @@ impl Part {
     /// Returns the sRGB colour; `None` if the source states none.
     pub const fn colour(&self) -> Option<[f64; 3]> {
         self.colour
+    }
+
+    /// Returns the name of the material; `None` if the source states none.
+    pub fn material(&self) -> Option<&str> {
+        self.material.as_deref()
+    }
+
+    /// Returns the density in kilograms per cubic metre; `None` if it is unknown.
+    pub const fn density(&self) -> Option<f64> {
+        self.density
     }
 
     /// Returns descriptions of repairs and of remaining defects of the surface.
@@ -349,6 +375,28 @@ impl Assembly {
     pub fn with_fixed<S: AsRef<str>>(mut self, names: &[S]) -> Result<Self, AssemblyError> {
         for part in self.parts_named(names)? {
             self.parts[part].fixed = true;
+        }
+        Ok(self)
+    }
+
+    /// Returns the assembly with a density, in kilograms per cubic metre, of all parts of a material, or of parts
+    /// with a name. A material of this name wins over a part of this name. The name of a part is a pattern of
+    /// [`parts_named`](Self::parts_named).
+    ///
+    /// # Errors
+    /// [`AssemblyError::InvalidValue`] if the density is negative or not finite, and
+    /// [`AssemblyError::UnknownPart`] if no material and no part has the name.
+    pub fn with_density(mut self, name: &str, density: f64) -> Result<Self, AssemblyError> {
+        if !(density.is_finite() && (0.0..1e9).contains(&density)) {
+            return Err(AssemblyError::InvalidValue { what: "density", value: density });
+        }
+        let is_meant = |part: &Part| part.material() == Some(name.trim());
+        let of_material: Vec<usize> =
+            (0..self.parts.len()).filter(|&k| is_meant(&self.parts[k])).collect();
+        let meant =
+            if of_material.is_empty() { self.parts_named(&[name])? } else { of_material };
+        for part in meant {
+            self.parts[part].density = Some(density);
         }
         Ok(self)
     }

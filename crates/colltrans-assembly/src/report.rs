@@ -1,6 +1,7 @@
 //! Reports for people: one HTML file ([`html`]) and an animation ([`glb`]), and all findings as JSON
 //! ([`facts`]). Of an audit: an HTML file ([`clashes`]), and issues for programs of the building industry ([`bcf`]).
 //!
+//! - `bill`: the bill of materials, also as CSV ([`bill_csv`]).
 //! - `cover`: the first page, with an `exploded` view. `sheet`: a page for each step. `after`: the sections
 //!   after the steps.
 //! - `tables`: folded tables with blocking graphs ([`graph`]). `viewer`: an interactive view.
@@ -8,6 +9,7 @@
 //! - `scene`: pictures, with the `lines` of each part. `cut`: a plane through the place where two parts meet.
 
 mod after;
+mod bill;
 #[cfg(feature = "bcf")]
 pub mod bcf;
 pub mod clashes;
@@ -26,6 +28,7 @@ mod tables;
 mod viewer;
 mod words;
 
+pub use bill::bill_csv;
 pub use colltrans_picture::escape_xml;
 use glam::DVec3;
 use maud::PreEscaped;
@@ -36,34 +39,99 @@ use crate::plan::Step;
 use scene::Studio;
 use words::Words;
 
+/// Order in which a document shows the steps of a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Order {
+    /// The order of the plan, which takes the assembly apart.
+    Disassembly,
+    /// The reverse order with reversed moves, which puts it together.
+    Assembly,
+}
+
 /// Data that all pages share.
 struct Report<'a> {
     pub f: &'a Analysis<'a>,
+    pub order: Order,
     pub words: Words<'a>,
     pub studio: Studio<'a>,
     /// For each step, the estimated handling time in seconds.
     pub seconds: Vec<f64>,
-    /// For each step, the index of its round.
+    /// For each step, the index of its round in the order of the document.
     pub rounds: Vec<usize>,
+    /// For each step, the steps that are needed before it in the order of the document.
+    pub needs: Vec<Vec<usize>>,
     /// Length of the diagonal of the box of all parts.
     pub diagonal: f64,
 }
 
 impl<'a> Report<'a> {
     /// Prepares the data of a report.
-    fn new(f: &'a Analysis<'a>) -> Self {
-        let mut rounds = vec![0; f.plan.steps.len()];
-        for (round, steps) in f.plan.parallel_rounds().iter().enumerate() {
-            for &step in steps {
-                rounds[step] = round;
-            }
-        }
+    fn new(f: &'a Analysis<'a>, order: Order) -> Self {
+        let (rounds, needs) = match order {
+            Order::Disassembly => removal_rounds(f),
+            Order::Assembly => insertion_rounds(f),
+        };
         let bounds = f.bodies.assembly().bounds();
         let diagonal = DVec3::length(bounds.high - bounds.low);
         let (words, studio, seconds) =
             (Words::new(f), Studio::new(f), f.times.step_seconds(&f.plan));
-        Self { f, words, studio, seconds, rounds, diagonal }
+        Self { f, order, words, studio, seconds, rounds, needs, diagonal }
     }
+
+    /// Checks whether the document shows how the assembly is put together.
+    fn is_assembly(&self) -> bool {
+        self.order == Order::Assembly
+    }
+
+    /// Returns the sign of directions in the order of the document.
+    fn sign(&self) -> f64 {
+        if self.is_assembly() { -1.0 } else { 1.0 }
+    }
+
+    /// Returns the position of a step of the plan in the order of the document, from 0 on.
+    fn position(&self, step: usize) -> usize {
+        if self.is_assembly() { self.f.plan.steps.len() - 1 - step } else { step }
+    }
+
+    /// Formats steps of the plan as their numbers in the document: "1–4, 6".
+    fn step_numbers(&self, steps: &[usize]) -> String {
+        let positions: Vec<usize> = steps.iter().map(|&step| self.position(step)).collect();
+        words::number_runs(&positions)
+    }
+
+    /// Returns "step 3" or "steps 1–4, 6".
+    fn step_list(&self, steps: &[usize]) -> String {
+        let one = steps.iter().all(|step| *step == steps[0]);
+        format!("{} {}", if one { "step" } else { "steps" }, self.step_numbers(steps))
+    }
+}
+
+/// Returns the round and the required earlier steps of each step, if the steps take the assembly apart.
+fn removal_rounds(f: &Analysis) -> (Vec<usize>, Vec<Vec<usize>>) {
+    let mut rounds = vec![0; f.plan.steps.len()];
+    for (round, steps) in f.plan.parallel_rounds().iter().enumerate() {
+        for &step in steps {
+            rounds[step] = round;
+        }
+    }
+    (rounds, f.plan.steps.iter().map(|step| step.predecessors.clone()).collect())
+}
+
+/// Returns the round and the required earlier steps of each step, if the steps in reverse order put the assembly
+/// together. A group is complete before it is put in.
+fn insertion_rounds(f: &Analysis) -> (Vec<usize>, Vec<Vec<usize>>) {
+    let steps = &f.plan.steps;
+    let (mut rounds, mut needs) = (vec![0; steps.len()], vec![Vec::new(); steps.len()]);
+    for (later, step) in steps.iter().enumerate() {
+        let freed = step.predecessors.iter().copied().chain(step.group_step);
+        freed.for_each(|earlier| needs[earlier].push(later));
+    }
+    for step in (0..steps.len()).rev() {
+        needs[step].sort_unstable();
+        needs[step].dedup();
+        rounds[step] = needs[step].iter().map(|&k: &usize| rounds[k] + 1).max().unwrap_or(0);
+    }
+    (rounds, needs)
 }
 
 /// Marks an SVG picture that this crate drew as safe HTML. Its texts are escaped already.

@@ -86,6 +86,7 @@ fn plan_in_pool(arguments: &AssemblyArguments) -> Result<(), Failure> {
     }
     let assembly = read_assembly(&arguments.source, &arguments.input, &arguments.roles)?;
     let assembly = constraints::with_constraints(assembly, &arguments.asked)?;
+    let assembly = constraints::with_densities(assembly, &arguments.density)?;
     let mapped_groups = named_groups(&arguments.map, &assembly)?;
     let removed_groups = named_groups(&arguments.free, &assembly)?;
     let wanted = assembly.parts_named(&arguments.asked.remove)?;

@@ -70,6 +70,10 @@ pub(super) struct Draft {
     pub(super) chord_error: Option<f64>,
     /// The colour, as red, green and blue in sRGB.
     pub(super) colour: Option<[f64; 3]>,
+    /// The name of the material.
+    pub(super) material: Option<String>,
+    /// The density in kilograms per cubic metre.
+    pub(super) density: Option<f64>,
     /// Whether the source declares this to be one part.
     pub(super) is_one_part: bool,
     /// The rule of the source for this part, which overrides the option.
@@ -101,6 +105,8 @@ impl Draft {
             fixed: false,
             chord_error: None,
             colour: None,
+            material: None,
+            density: None,
             is_one_part: false,
             split: None,
             file: None,
@@ -304,5 +310,6 @@ fn build_part(
     let part = Part::with_options(name, &pieces, &source.options.body_options());
     let part = part.map_err(|e| draft.located_error(source, e))?;
     let part = part.with_fixed(draft.fixed).with_colour(draft.colour);
+    let part = part.with_material(draft.material.clone()).with_density(draft.density);
     Ok(part.with_chord_error(draft.chord_error))
 }

@@ -2,6 +2,7 @@
 //!
 //! TOML and JSON have the same fields, which `docs/reference/assemblies.md` and `colltrans help files` list.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,6 +27,9 @@ use colltrans_assembly::{Assembly, Ignored};
 #[serde(deny_unknown_fields, expecting = "an object (manifest)")]
 struct Manifest {
     unit: Option<String>,
+    /// Densities of materials in kilograms per cubic metre.
+    #[serde(default)]
+    densities: BTreeMap<String, f64>,
     #[serde(default, alias = "part")]
     parts: Vec<PartEntry>,
     #[serde(default)]
@@ -92,6 +96,9 @@ struct PartEntry {
     #[serde(default)]
     fixed: bool,
     split: Option<String>,
+    material: Option<String>,
+    /// The density in kilograms per cubic metre.
+    density: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -158,7 +165,12 @@ pub(super) fn read_manifest(source: Source) -> Result<Assembly, ReadError> {
     };
     let metres = manifest.unit.as_deref().and_then(units::unit_in_metres);
     let mut gathered =
-        PartGatherer { budget: Budget::with_bytes(text.len()), metres, ..PartGatherer::default() };
+        PartGatherer {
+            budget: Budget::with_bytes(text.len()),
+            metres,
+            densities: manifest.densities.clone(),
+            ..PartGatherer::default()
+        };
     for (k, entry) in manifest.parts.iter().enumerate() {
         gathered.add_part(&source, k, entry)?;
     }
@@ -258,6 +270,8 @@ struct PartGatherer {
     budget: Budget,
     /// The unit of the manifest in metres, if it names a known unit.
     metres: Option<f64>,
+    /// The densities of materials in kilograms per cubic metre.
+    densities: BTreeMap<String, f64>,
     drafts: Vec<Draft>,
     missing: Vec<String>,
     /// Names of parts with missing files.
@@ -314,7 +328,17 @@ impl PartGatherer {
                     format!("split: {e}"),
                 )
             })?;
-            let draft = Draft { fixed: entry.fixed, split, ..Draft::new(name, pieces) };
+            let of_material =
+                entry.material.as_ref().and_then(|name| self.densities.get(name).copied());
+            let density = entry.density.or(of_material);
+            if let Some(value) = density.filter(|d| !(0.0..1e9).contains(d)) {
+                return Err(refused(format!(
+                    "invalid density {value:?} of {name}; accepted: kilograms per cubic metre, from 0 to below 1e9"
+                )));
+            }
+            let material = entry.material.clone();
+            let draft =
+                Draft { fixed: entry.fixed, split, material, density, ..Draft::new(name, pieces) };
             self.drafts.push(draft.marked_as_one_part());
         } else {
             self.left_out.push(name);

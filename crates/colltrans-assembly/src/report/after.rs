@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use maud::{Markup, html};
 
-use super::sheet::{self, direction_text, step_list, taken_parts_text, travel_text};
-use super::words::{number_runs, time_text};
-use super::{Report, direction_name, picture_markup, short_number};
+use super::sheet::{self, direction_text, taken_parts_text, travel_text};
+use super::words::{number_runs, plain_number, time_text};
+use super::{Report, direction_name, picture_markup};
 use crate::Fit;
 use crate::map;
 use crate::plan::ToleratedContact;
@@ -93,7 +93,8 @@ fn assembly_section(r: &Report) -> Markup {
         @if plan.steps.len() > 1 {
             h3 { "Putting it together" }
             p {
-                "The steps in reverse order, with each move reversed; the same proofs apply"
+                "The steps in reverse order, with each move reversed; the same proofs apply. The file instructions.html has them \
+                 in pictures"
                 @if !plan.base.is_empty() { ". It begins with " (r.words.name_list(&plan.base)) }
                 "."
             }
@@ -103,7 +104,7 @@ fn assembly_section(r: &Report) -> Markup {
                     li {
                         (taken_parts_text(r, stage)) ": "
                         @if step.path.len() > 1 {
-                            (step_list(&stage.clone().collect::<Vec<_>>())) " in reverse"
+                            (r.step_list(&stage.clone().collect::<Vec<_>>())) " in reverse"
                         } @else {
                             (direction_text(r, stage, -1.0))
                         }
@@ -148,7 +149,7 @@ fn constraints_section(r: &Report) -> Markup {
         }
     }));
     items.extend(constraints.forbidden_directions().iter().map(|never| {
-        let within = short_number(never.angle_degrees);
+        let within = plain_number(never.angle_degrees);
         format!(
             "{} never goes {}, nor within {within}° of that",
             name(never.part),
@@ -194,7 +195,7 @@ fn overlaps_section(r: &Report) -> Markup {
                 }
                 ", and count as one body where they meet; a table of them is at the end of the file."
                 @if let Some(tolerance) = f.start.suggested_tolerance.filter(|_| !apart) {
-                    " Try a tolerance of " (short_number(tolerance)) " or, for curved fits, the chord errors of both parts together."
+                    " Try a tolerance of " (plain_number(tolerance)) " or, for curved fits, the chord errors of both parts together."
                 }
             }
         }
@@ -229,7 +230,7 @@ fn suggestion_texts(r: &Report) -> Vec<String> {
         let remedy = s
             .fit
             .tolerance
-            .map(|t| format!("; a tolerance of {} removes the overlap", r.words.length_text(t)));
+            .map(|t| format!("; a tolerance of {} removes the overlap", r.words.fine_length_text(t)));
         format!("{what} ({}){}", s.reason, remedy.unwrap_or_default())
     };
     sheet::pair_texts(r, all.into_iter().map(|s| (s.parts, s.fit.role, text(s))))
@@ -254,7 +255,7 @@ fn map_section(map: &map::RemovalMap, name: &str) -> Markup {
         }
         @for region in map.regions.iter().take(8) {
             p {
-                "A free region of " (short_number(region.solid_angle)) " steradians around "
+                "A free region of " (plain_number(region.solid_angle)) " steradians around "
                 (direction_name(region.center)) "."
             }
         }
@@ -264,5 +265,5 @@ fn map_section(map: &map::RemovalMap, name: &str) -> Markup {
 
 /// Formats a share as a percentage.
 fn percentage(share: f64) -> String {
-    format!("{} %", short_number(100.0 * share))
+    format!("{} %", plain_number(100.0 * share))
 }

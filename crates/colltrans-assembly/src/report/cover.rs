@@ -7,7 +7,6 @@ use maud::{Markup, html};
 use super::exploded::Exploded;
 use super::kinds::{Kind, kinds};
 use super::scene::{Look, Scene, Shown};
-use super::sheet::step_list;
 use super::words::{sentence, time_text};
 use super::{Report, html_colour, picture_markup};
 use crate::Fit;
@@ -25,7 +24,7 @@ const ONE_COLUMN: usize = 8;
 
 /// Returns the first page.
 pub(super) fn cover_page(r: &Report, title: &str) -> Markup {
-    let kinds = kinds(&r.f.plan, r.f.bodies.len());
+    let kinds = kinds(&r.f.plan, r.f.bodies.assembly().parts());
     html! {
         section.sheet id="cover" {
             h1 { (title) }
@@ -50,14 +49,14 @@ fn summary_text(r: &Report, kinds: usize) -> String {
     let unit = if assembly.unit().is_none() { " The file states no unit of length." } else { "" };
     let fit = match r.f.bodies.fit() {
         Fit::Tolerance(length) if length <= 1.001 * Fit::digits(assembly) => String::new(),
-        Fit::Tolerance(length) => format!(" Tolerance {}.", words.length_text(length)),
+        Fit::Tolerance(length) => format!(" Tolerance {}.", words.fine_length_text(length)),
         Fit::Chords { largest, .. } => {
             format!(
                 " Tolerances from the chord errors of the parts, at most {}.",
-                words.length_text(largest)
+                words.fine_length_text(largest)
             )
         }
-        Fit::MinGap(length) => format!(" Minimum gap {}.", words.length_text(length)),
+        Fit::MinGap(length) => format!(" Minimum gap {}.", words.fine_length_text(length)),
     };
     let seconds: f64 = r.seconds.iter().sum();
     let work = match r.f.plan.steps.len() {
@@ -137,7 +136,10 @@ fn exploded_picture(r: &Report, kinds: &[Kind], title: &str) -> Markup {
     html! {
         figure {
             (picture_markup(r.studio.draw_picture(&scene, r.studio.default_viewpoint())))
-            figcaption { "Each part is moved along its own path. Numbers refer to the list." }
+            figcaption {
+                "Each part is moved along its own path. Numbers refer to the list."
+                @if let Some(frame) = r.words.frame_text() { " Directions: " (frame) "." }
+            }
         }
     }
 }
@@ -164,7 +166,7 @@ fn part_list(r: &Report, kinds: &[Kind]) -> Markup {
                         @if fixed(kind) { " (fixed)" }
                     }
                     span { (r.words.sides_text(assembly.parts()[kind.parts[0]].bounds().side_lengths())) }
-                    span { @if kind.steps.is_empty() { "stays" } @else { (step_list(&kind.steps)) } }
+                    span { @if kind.steps.is_empty() { "stays" } @else { (r.step_list(&kind.steps)) } }
                 }
             }
         }

@@ -6,7 +6,7 @@ use super::kind_colour;
 use crate::part::Part;
 use crate::plan::Plan;
 
-/// Parts of equal shape.
+/// Parts of equal shape, material and density.
 pub(super) struct Kind {
     /// Indices of the parts, in increasing order.
     pub parts: Vec<usize>,
@@ -14,16 +14,18 @@ pub(super) struct Kind {
     pub steps: Vec<usize>,
 }
 
-/// Groups the parts by shape, in the order of their first steps. Kinds that stay are last.
-pub(super) fn kinds(plan: &Plan, parts: usize) -> Vec<Kind> {
-    let mut step_of = vec![None; parts];
+/// Groups the parts by shape, material and density, in the order of their first steps. Kinds that stay are last.
+pub(super) fn kinds(plan: &Plan, parts: &[Part]) -> Vec<Kind> {
+    let mut step_of = vec![None; parts.len()];
     for (k, step) in plan.steps.iter().enumerate() {
         step.parts.iter().for_each(|&part| step_of[part] = Some(k));
     }
-    let mut by_first = BTreeMap::<usize, Vec<usize>>::new();
-    for part in 0..parts {
-        let first = plan.first_identical.get(part).copied().unwrap_or(part);
-        by_first.entry(first).or_default().push(part);
+    // Bits of densities, so that they can be compared.
+    let mut by_first = BTreeMap::<(usize, Option<&str>, Option<u64>), Vec<usize>>::new();
+    for (k, part) in parts.iter().enumerate() {
+        let first = plan.first_identical.get(k).copied().unwrap_or(k);
+        let key = (first, part.material(), part.density().map(f64::to_bits));
+        by_first.entry(key).or_default().push(k);
     }
     let kind = |parts: Vec<usize>| {
         let mut steps: Vec<usize> = parts.iter().filter_map(|&part| step_of[part]).collect();
@@ -44,7 +46,7 @@ pub(super) fn part_colours(plan: &Plan, parts: &[Part]) -> Vec<[f64; 3]> {
         return own;
     }
     let mut colours = vec![kind_colour(0); parts.len()];
-    for (k, kind) in kinds(plan, parts.len()).iter().enumerate() {
+    for (k, kind) in kinds(plan, parts).iter().enumerate() {
         kind.parts.iter().for_each(|&part| colours[part] = kind_colour(k));
     }
     colours

@@ -97,6 +97,8 @@ const COARSE_SCALE: f64 = 0.25;
 const MIN_VISIBLE_SHARE: f64 = 0.5;
 /// Maximum number of parts that are made transparent, one in each round.
 const MAX_GLASS_ROUNDS: usize = 16;
+/// Minimum width of a picture with axes in pixels.
+const MIN_WIDTH_OF_AXES: f64 = 300.0;
 /// Width of arrows, which are wider than in pictures of two bodies, in pixels.
 const REPORT_ARROW_WIDTH: f64 = 2.5;
 
@@ -344,7 +346,9 @@ impl<'a> Studio<'a> {
         }
         draw_numbers(&mut page, scene, &raster);
         let aside = if scene.numbers.is_empty() { 0.0 } else { 2.0 * NUMBER_INSET };
-        draw_axes(&mut page, &projection.view, DVec2::new(36.0 + aside, scene.size.y - 36.0));
+        if scene.size.x >= MIN_WIDTH_OF_AXES {
+            draw_axes(&mut page, &projection.view, DVec2::new(36.0 + aside, scene.size.y - 36.0));
+        }
         page.inline(scene.size, &scene.label)
     }
 

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::{Analysis, direction_name, graph, picture_markup, short_number};
+use super::{Report, direction_name, graph, picture_markup};
 use crate::blocking::BlockingGraph;
 use crate::bodies::Fit;
 use crate::fasteners::Fastener;
@@ -15,13 +15,13 @@ const MAX_ROWS: usize = 200;
 const MAX_GRAPHS: usize = 6;
 
 /// Returns all tables.
-pub(super) fn all_tables(f: &Analysis) -> Markup {
+pub(super) fn all_tables(r: &Report) -> Markup {
     let contents = [
-        ("All parts", parts_table(f)),
-        ("Parts that overlap as drawn, or with this fit", overlaps_table(f)),
-        ("Free travel of each part with all others in place", free_travel_table(f)),
-        ("Blocking graphs, by direction", blocking_graphs(f)),
-        ("Contacts", contacts_table(f)),
+        ("All parts", parts_table(r)),
+        ("Parts that overlap as drawn, or with this fit", overlaps_table(r)),
+        ("Free travel of each part with all others in place", free_travel_table(r)),
+        ("Blocking graphs, by direction", blocking_graphs(r)),
+        ("Contacts", contacts_table(r)),
     ];
     html! {
         @for (title, content) in contents {
@@ -31,7 +31,8 @@ pub(super) fn all_tables(f: &Analysis) -> Markup {
 }
 
 /// Returns the table of overlapping pairs.
-fn overlaps_table(f: &Analysis) -> Markup {
+fn overlaps_table(r: &Report) -> Markup {
+    let f = r.f;
     let name = |k: usize| f.bodies.assembly().parts()[k].name();
     html! {
         @if f.start.overlaps.is_empty() {
@@ -43,7 +44,7 @@ fn overlaps_table(f: &Analysis) -> Markup {
                     @for o in f.start.overlaps.iter().take(MAX_ROWS) {
                         tr {
                             td { (name(o.parts[0])) ", " (name(o.parts[1])) }
-                            td.n { (o.depth.map_or("more than their size".into(), short_number)) }
+                            td.n { (o.depth.map_or("more than their size".into(), |depth| r.words.fine_length_text(depth))) }
                             td { (match (o.remains_with_fit, f.bodies.fit()) { (false, _) => "do not", (_, Fit::MinGap(_)) => "too near", _ => "overlap" }) }
                         }
                     }
@@ -59,7 +60,8 @@ fn without_rounding(x: f64, size: f64) -> f64 {
 }
 
 /// Returns the table of free travels by part and direction.
-fn free_travel_table(f: &Analysis) -> Markup {
+fn free_travel_table(r: &Report) -> Markup {
+    let f = r.f;
     let size = f.bodies.assembly().largest_side();
     let name = |k: usize| f.bodies.assembly().parts()[k].name();
     let directions = f.matrix.directions();
@@ -67,7 +69,11 @@ fn free_travel_table(f: &Analysis) -> Markup {
         PartTravel::Free => "free".into(),
         PartTravel::Overlapping { by, .. } => format!("overlaps {}", name(*by)),
         PartTravel::Blocked { by, stop, .. } => {
-            format!("{} {}", short_number(without_rounding(stop.distance(), size)), name(*by))
+            format!(
+                "{} {}",
+                r.words.length_number(without_rounding(stop.distance(), size)),
+                name(*by)
+            )
         }
     };
     html! {
@@ -88,7 +94,8 @@ fn free_travel_table(f: &Analysis) -> Markup {
 }
 
 /// Returns the blocking graphs of the first directions; empty for large assemblies.
-fn blocking_graphs(f: &Analysis) -> Markup {
+fn blocking_graphs(r: &Report) -> Markup {
+    let f = r.f;
     let most = 60;
     if f.bodies.is_empty() || f.bodies.len() > most {
         return Markup::default();
@@ -114,7 +121,8 @@ fn blocking_graphs(f: &Analysis) -> Markup {
 }
 
 /// Returns the table of contacts with their areas and centres.
-fn contacts_table(f: &Analysis) -> Markup {
+fn contacts_table(r: &Report) -> Markup {
+    let f = r.f;
     let name = |k: usize| f.bodies.assembly().parts()[k].name();
     let size = f.bodies.assembly().coordinate_size();
     html! {
@@ -126,8 +134,8 @@ fn contacts_table(f: &Analysis) -> Markup {
                 @for l in f.liaisons.iter().take(MAX_ROWS) {
                     tr {
                         td { (name(l.parts[0])) ", " (name(l.parts[1])) }
-                        td.n { (short_number(l.area())) }
-                        td { (l.centroid().to_array().map(|x| short_number(without_rounding(x, size))).join(", ")) }
+                        td.n { (r.words.area_text(l.area())) }
+                        td { (l.centroid().to_array().map(|x| r.words.length_number(without_rounding(x, size))).join(", ")) }
                     }
                 }
             } }
@@ -136,7 +144,8 @@ fn contacts_table(f: &Analysis) -> Markup {
 }
 
 /// Returns the table of parts with their facets, volumes and remarks.
-fn parts_table(f: &Analysis) -> Markup {
+fn parts_table(r: &Report) -> Markup {
+    let f = r.f;
     let remarks = |k: usize, p: &Part| {
         let fixed = p.is_fixed().then(|| "fixed".to_owned());
         let all: Vec<String> =
@@ -160,7 +169,7 @@ fn parts_table(f: &Analysis) -> Markup {
                         td { (fastener.map_or_else(String::new, Fastener::details)) }
                     }
                     td.n { (p.facet_count()) }
-                    td.n { (short_number(p.solid().volume())) }
+                    td.n { (r.words.volume_text(p.solid().volume())) }
                     td { (remarks(k, p)) }
                 }
             }

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
-use super::{Analysis, direction_name, rounded_number, short_number};
+use super::{Analysis, direction_name, short_number};
 use crate::identical::common_name;
 use crate::part::Assembly;
 use crate::plan::Leg;
@@ -21,15 +21,27 @@ const MAX_STEMS: usize = 3;
 const MAX_RUNS: usize = 5;
 /// Sides below this share of the longest one count as 0, as for sheets.
 const MIN_SIDE: f64 = 1e-6;
+/// Decimals of lengths in each unit: 0.01 mm, or a little finer.
+const DECIMALS: [(&str, usize); 6] =
+    [("mm", 2), ("cm", 3), ("m", 4), ("in", 3), ("ft", 4), ("micron", 1)];
+/// Significant digits of the size of an assembly by which lengths are rounded if the unit is unknown or large.
+const SIZE_DIGITS: i32 = 4;
+/// Maximum number of decimals of a small length.
+const MAX_DECIMALS: usize = 9;
+/// Decimals of angles in degrees.
+const ANGLE_DECIMALS: usize = 1;
 /// Angle in radians below which directions count as equal.
 const SAME_DIRECTION: f64 = 1e-6;
 
 /// Formats lengths, directions and names of an assembly.
 pub(super) struct Words<'a> {
     assembly: &'a Assembly,
-    up: DVec3,
+    /// Directions to the right, to the back and up. In the default view the front and the right are nearest.
+    frame: [DVec3; 3],
     factor: f64,
     unit: &'a str,
+    /// Number of decimals of lengths.
+    decimals: usize,
 }
 
 impl<'a> Words<'a> {
@@ -40,12 +52,51 @@ impl<'a> Words<'a> {
         // Machines that fit on a bench are measured in millimetres.
         let small = units::unit_in_metres(unit) == Some(1.0) && assembly.coordinate_size() < 2.0;
         let (factor, unit) = if small { (1e3, "mm") } else { (1.0, unit) };
-        Self { assembly, up: f.up, factor, unit }
+        let bounds = assembly.bounds();
+        let size = (bounds.high - bounds.low).length() * factor;
+        let turn = DQuat::from_rotation_arc(DVec3::Z, f.up);
+        let frame = [turn * DVec3::X, turn * DVec3::Y, f.up];
+        Self { assembly, frame, factor, unit, decimals: length_decimals(unit, size) }
     }
 
     /// Formats a length with its unit.
     pub(super) fn length_text(&self, x: f64) -> String {
-        self.with_unit(short_number(x * self.factor))
+        self.with_unit(self.length_number(x))
+    }
+
+    /// Formats a length without its unit, rounded as on a drawing.
+    pub(super) fn length_number(&self, x: f64) -> String {
+        drawing_number(x * self.factor, self.decimals)
+    }
+
+    /// Formats a length that may be far below the precision of a drawing, such as a tolerance, without an exponent.
+    pub(super) fn fine_length_text(&self, x: f64) -> String {
+        let x = x * self.factor;
+        if x == 0.0 || !x.is_finite() {
+            return self.with_unit(drawing_number(x, 0));
+        }
+        let two_digits = 1 - x.abs().log10().floor() as i32;
+        let decimals = usize::try_from(two_digits).unwrap_or(0).clamp(self.decimals, MAX_DECIMALS);
+        self.with_unit(drawing_number(x, decimals))
+    }
+
+    /// Formats an area without an exponent.
+    pub(super) fn area_text(&self, x: f64) -> String {
+        self.with_power(plain_number(x * self.factor.powi(2)), "²")
+    }
+
+    /// Formats a volume without an exponent; from 1000 mm³ on in cubic centimetres.
+    pub(super) fn volume_text(&self, x: f64) -> String {
+        let x = x * self.factor.powi(3);
+        if self.unit == "mm" && x.abs() >= 1e3 {
+            return format!("{} cm³", plain_number(x / 1e3));
+        }
+        self.with_power(plain_number(x), "³")
+    }
+
+    /// Appends a power of the unit, if it is known.
+    fn with_power(&self, number: String, power: &str) -> String {
+        if self.unit.is_empty() { number } else { format!("{number} {}{power}", self.unit) }
     }
 
     /// Appends the unit, if it is known.
@@ -62,8 +113,8 @@ impl<'a> Words<'a> {
     /// thickness of a flat surface, becomes 0.
     pub(super) fn sides_text(&self, size: DVec3) -> String {
         let least = MIN_SIDE * size.max_element();
-        let side = |x: f64| if x < least { 0.0 } else { x * self.factor };
-        size.to_array().map(|x| rounded_number(side(x), 3)).join(" × ")
+        let side = |x: f64| if x < least { 0.0 } else { x };
+        size.to_array().map(|x| self.length_number(side(x))).join(" × ")
     }
 
     /// Returns the unit of lengths; empty if it is unknown.
@@ -71,37 +122,76 @@ impl<'a> Words<'a> {
         self.unit
     }
 
-    /// Formats a direction: "up (+z)", "along −x", "12° off +y (0.2, 0.98, 0)".
+    /// Formats a direction in words: "up (+z)", "towards the front (−y)", "towards the front, 34 degrees up". An axis
+    /// of the files is added in brackets.
     pub(super) fn direction_text(&self, d: DVec3) -> String {
-        let off = |axis: DVec3| angle(d, axis);
-        if off(self.up) < SAME_DIRECTION {
-            return format!("up ({})", axis_name(d));
+        let [right, back, up] = self.frame.map(|axis| d.dot(axis));
+        let elevation = up.atan2(right.hypot(back)).to_degrees();
+        let rounds_to_zero = |degrees: f64| degrees.abs() < 0.5 * 0.1_f64.powi(ANGLE_DECIMALS as i32);
+        let vertical = if up > 0.0 { "up" } else { "down" };
+        let mut words = Vec::new();
+        if rounds_to_zero(90.0 - elevation.abs()) {
+            words.push(vertical.to_owned());
+        } else {
+            let (along, [main, side]) = match (right.abs() > back.abs(), right > 0.0, back > 0.0) {
+                (true, is_right, is_back) => (
+                    back.abs().atan2(right.abs()),
+                    [if is_right { "right" } else { "left" }, if is_back { "back" } else { "front" }],
+                ),
+                (false, is_right, is_back) => (
+                    right.abs().atan2(back.abs()),
+                    [if is_back { "back" } else { "front" }, if is_right { "right" } else { "left" }],
+                ),
+            };
+            words.push(format!("towards the {main}"));
+            let degrees = |x: f64| drawing_number(x.abs(), ANGLE_DECIMALS);
+            if !rounds_to_zero(along.to_degrees()) {
+                words.push(format!("{} degrees to the {side}", degrees(along.to_degrees())));
+            }
+            if !rounds_to_zero(elevation) {
+                words.push(format!("{} degrees {vertical}", degrees(elevation)));
+            }
         }
-        if off(DVec3::ZERO - self.up) < SAME_DIRECTION {
-            return format!("down ({})", axis_name(d));
-        }
+        let is_single = words.len() == 1;
+        let text = words.join(", ");
         let axis = nearest_axis(d);
-        if off(axis) < SAME_DIRECTION {
-            return format!("along {}", direction_name(axis));
+        if angle(d, axis) < SAME_DIRECTION {
+            return format!("{text} ({})", direction_name(axis));
         }
-        let by = rounded_number(off(axis).to_degrees(), 2);
-        format!("{by}° off {} {}", direction_name(axis), direction_name(d).replace('-', "−"))
+        let is_exact = self.frame.iter().any(|&own| own.cross(d).length() < SAME_DIRECTION);
+        if is_single && !is_exact { format!("almost {text}") } else { text }
     }
 
-    /// Describes a move with its travel and its rotation.
-    pub(super) fn move_text(&self, leg: &Leg) -> String {
-        let mut text = self.direction_text(leg.direction);
+    /// Returns the names of the directions by axes of the files: "front is −y, right is +x, up is +z"; `None` if the
+    /// upward direction is not an axis.
+    pub(super) fn frame_text(&self) -> Option<String> {
+        let [right, back, up] = self.frame;
+        let axis = |d: DVec3| {
+            let axis = nearest_axis(d);
+            (angle(d, axis) < SAME_DIRECTION).then(|| direction_name(axis))
+        };
+        let [front, right, up] = [axis(DVec3::ZERO - back)?, axis(right)?, axis(up)?];
+        Some(format!("front is {front}, right is {right}, up is {up}"))
+    }
+
+    /// Describes a move with its travel and its rotation, or its reverse.
+    pub(super) fn move_text(&self, leg: &Leg, is_reversed: bool) -> String {
+        let sign = if is_reversed { -1.0 } else { 1.0 };
+        let mut text = self.direction_text(leg.direction * sign + DVec3::ZERO);
         if self.is_significant(leg.travel) {
             text = format!("{text}, {}", self.length_text(leg.travel));
         }
         let Some(turn) = &leg.turn else { return text };
-        let hand = if turn.turns < 0.0 { "clockwise" } else { "counter-clockwise" };
+        // The reverse of a screw motion has the same hand; it is described from the other side.
+        let hand = if turn.turns * sign < 0.0 { "clockwise" } else { "counter-clockwise" };
+        let (verb, side) =
+            if is_reversed { ("screwed in", "along") } else { ("unscrewed", "against") };
         let turns = if leg.travel == 0.0 {
             format!("turned by {:.0} degrees", 360.0 * turn.turns.abs())
         } else {
-            format!("unscrewed by {:.1} turns", turn.turns.abs())
+            format!("{verb} by {:.1} turns", turn.turns.abs())
         };
-        format!("{turns} {hand} as viewed against its motion; {text}")
+        format!("{turns} {hand} as viewed {side} its motion; {text}")
     }
 
     /// Checks whether a length exceeds the last digits of the files.
@@ -180,10 +270,50 @@ fn nearest_axis(d: DVec3) -> DVec3 {
     DVec3::AXES[k] * d[k].signum()
 }
 
-/// Formats a direction, as an axis if it is nearly parallel to one.
-fn axis_name(d: DVec3) -> String {
-    let axis = nearest_axis(d);
-    direction_name(if angle(d, axis) < SAME_DIRECTION { axis } else { d })
+/// Returns the number of decimals of lengths in a unit, for an assembly of a size in this unit.
+fn length_decimals(unit: &str, size: f64) -> usize {
+    let by_size = if size > 0.0 && size.is_finite() {
+        usize::try_from(SIZE_DIGITS - 1 - size.log10().floor() as i32).unwrap_or(0)
+    } else {
+        SIZE_DIGITS as usize
+    };
+    let by_unit = DECIMALS.iter().find(|(name, _)| *name == unit).map(|(_, decimals)| *decimals);
+    let decimals = match by_unit {
+        Some(decimals) if size >= 1.0 || size == 0.0 => decimals,
+        Some(decimals) => decimals.max(by_size),
+        None => by_size,
+    };
+    decimals.min(MAX_DECIMALS)
+}
+
+/// Formats a number with at most this many decimals and without an exponent. A number that would become zero is
+/// "under" the smallest one.
+fn drawing_number(x: f64, decimals: usize) -> String {
+    if !x.is_finite() {
+        return "∞".into();
+    }
+    let text = format!("{x:.decimals$}");
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    };
+    match &text[..] {
+        "0" | "-0" if x != 0.0 => {
+            format!("under {:.decimals$}", 0.1_f64.powi(i32::try_from(decimals).unwrap_or(0)))
+        }
+        "-0" => "0".into(),
+        _ => text,
+    }
+}
+
+/// Formats a number with four significant digits and without an exponent.
+pub(super) fn plain_number(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return drawing_number(x, 0);
+    }
+    let decimals = usize::try_from(3 - x.abs().log10().floor() as i32).unwrap_or(0);
+    drawing_number(x, decimals.min(MAX_DECIMALS))
 }
 
 /// Formats indices as numbers from 1 on, merged into runs: "1–8, 17". More than [`MAX_RUNS`] runs are
@@ -248,9 +378,74 @@ mod tests {
     #[test]
     fn thickness_of_sheet_is_zero() {
         let assembly = Assembly::default();
-        let words = Words { assembly: &assembly, up: DVec3::Z, factor: 1e3, unit: "mm" };
+        let words = words(&assembly, DVec3::Z);
         assert_eq!(words.extent_text(DVec3::new(2.4e-12, 0.0254, 0.054)), "0 × 25.4 × 54 mm");
-        assert_eq!(words.sides_text(DVec3::new(2.4e-6, 0.0254, 0.054)), "0.0024 × 25.4 × 54");
+        assert_eq!(words.sides_text(DVec3::new(2.4e-6, 0.0254, 0.054)), "under 0.01 × 25.4 × 54");
+    }
+
+    /// Returns words for an assembly in metres, in millimetres.
+    fn words(assembly: &Assembly, up: DVec3) -> Words<'_> {
+        let turn = DQuat::from_rotation_arc(DVec3::Z, up);
+        let frame = [turn * DVec3::X, turn * DVec3::Y, up];
+        Words { assembly, frame, factor: 1e3, unit: "mm", decimals: length_decimals("mm", 50.0) }
+    }
+
+    #[test]
+    fn lengths_have_hundredths_of_a_millimetre_and_no_exponent() {
+        let assembly = Assembly::default();
+        let words = words(&assembly, DVec3::Z);
+        let lengths = [0.0, 6.25e-7, 0.006_251_4, 0.012, 12_345.678_912, -0.002_5];
+        let expected =
+            ["0 mm", "under 0.01 mm", "6.25 mm", "12 mm", "12345678.91 mm", "-2.5 mm"];
+        assert_eq!(lengths.map(|x| words.length_text(x)), expected);
+        let tolerances = [0.0, 6.25e-7, 1e-4, 0.012_345, 6e-15];
+        let expected =
+            ["0 mm", "0.00063 mm", "0.1 mm", "12.35 mm", "under 0.000000001 mm"];
+        assert_eq!(tolerances.map(|x| words.fine_length_text(x)), expected);
+        assert_eq!([2e-9, 5e-6].map(|x| words.volume_text(x)), ["2 mm³", "5 cm³"]);
+        assert_eq!(words.area_text(1.23456e-10), "0.0001235 mm²");
+        assert_eq!(plain_number(123_456_789.0), "123456789");
+    }
+
+    #[test]
+    fn unknown_and_small_units_are_rounded_by_size() {
+        assert_eq!(length_decimals("", 24.0), 2);
+        assert_eq!(length_decimals("", 0.005), 6);
+        assert_eq!(length_decimals("mm", 0.5), 4);
+        assert_eq!(length_decimals("mm", 300.0), 2);
+        assert_eq!(length_decimals("", 1e7), 0);
+    }
+
+    #[test]
+    fn directions_are_described_in_words() {
+        let assembly = Assembly::default();
+        let by_angles = |towards: DVec3, degrees: f64| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            towards * cos + DVec3::Z * sin
+        };
+        let named = words(&assembly, DVec3::Z);
+        let cases = [
+            (DVec3::Z, "up (+z)"),
+            (DVec3::NEG_Z, "down (−z)"),
+            (DVec3::NEG_Y, "towards the front (−y)"),
+            (DVec3::NEG_X, "towards the left (−x)"),
+            (by_angles(DVec3::NEG_Y, 34.0), "towards the front, 34 degrees up"),
+            (by_angles(DVec3::X, -12.5), "towards the right, 12.5 degrees down"),
+            (DVec3::new(0.6, 0.8, 0.0), "towards the back, 36.9 degrees to the right"),
+            (by_angles(DVec3::Y, 89.99), "almost up"),
+            (by_angles(DVec3::Y, 0.01), "almost towards the back"),
+        ];
+        for (d, text) in cases {
+            assert_eq!(named.direction_text(d), text);
+        }
+        assert_eq!(named.frame_text().unwrap(), "front is −y, right is +x, up is +z");
+        let gltf = words(&assembly, DVec3::Y);
+        assert_eq!(gltf.direction_text(DVec3::Z), "towards the front (+z)");
+        assert_eq!(gltf.direction_text(DVec3::Y), "up (+y)");
+        assert_eq!(gltf.frame_text().unwrap(), "front is +z, right is +x, up is +y");
+        let tilted = words(&assembly, DVec3::new(0.0, 0.6, 0.8));
+        assert_eq!(tilted.direction_text(DVec3::new(0.0, 0.6, 0.8)), "up");
+        assert_eq!(tilted.frame_text(), None);
     }
 
     #[test]

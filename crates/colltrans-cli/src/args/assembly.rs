@@ -16,7 +16,7 @@ use super::values::{direction, factor, length, output_file, removed_legs, sample
 pub(crate) struct AssemblyArguments {
     /// A folder of meshes, a manifest, a .urdf, .glb, .gltf, .3mf or .step file, or one mesh
     pub(crate) source: PathBuf,
-    /// Folder for report.html, disassembly.glb, assembly.json, tables, maps and proofs
+    /// Folder for report.html, instructions.html, bill.csv, disassembly.glb, assembly.json, tables, maps and proofs
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Print one JSON object
@@ -66,6 +66,9 @@ pub(crate) struct AssemblyArguments {
     /// Handling times in seconds, as JSON; replaces entries of the table
     #[arg(long, value_name = "FILE.json", hide_short_help = true)]
     pub(crate) times: Option<PathBuf>,
+    /// Density in kg/m3 for the masses in bill.csv: of all parts, of a material or of a part; the last one wins
+    #[arg(long, value_name = "[NAME=]RHO", allow_hyphen_values = true, hide_short_help = true)]
+    pub(crate) density: Vec<String>,
     /// Number of threads [default: all cores]; the answer is the same
     #[arg(long, value_name = "N", value_parser = threads, hide_short_help = true)]
     pub(crate) threads: Option<NonZeroUsize>,

@@ -176,6 +176,7 @@ Scenes: meshes in place, and files of obstacles (.jsonl) with one object per lin
 
 const MANIFEST: &str = r#"Manifest of an assembly, in TOML (JSON has the same fields):
   unit = "mm"                                # optional; a unit is never guessed
+  densities = { steel = 7850 }               # of materials, in kg/m3; optional
   ignore = [["pin", "block"]]                # pairs whose overlap at the start is ignored
   ignore_always = [["rubber", "lid"]]        # pairs that never block each other
   pair = [{ parts = ["bush", "body"], role = "press", tolerance = 0.08 }]
@@ -193,6 +194,8 @@ const MANIFEST: &str = r#"Manifest of an assembly, in TOML (JSON has the same fi
   rotation = { rpy_degrees = [0, 90, 0] }    # or quaternion = [x, y, z, w], or matrix = rows
   scale = 0.9
   fixed = true                               # never moves
+  material = "steel"                         # optional, for the bill of materials
+  density = 7850                             # optional, in kg/m3
   split = "bodies"                           # or "names", "never": as --split"#;
 
 const EXIT_CODES: &str = "\
@@ -541,7 +544,9 @@ const JSON_ASSEMBLY: &str = r#"Answer of assembly:
   Parts that made room before go "back"."#;
 
 pub(super) const ASSEMBLY_NOTES: &str = "\
-With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (blocking pairs), precedence.csv
+With -o DIR: report.html, instructions.html (assembly, for print), bill.csv (bill of materials, with
+masses where --density or the manifest has densities), disassembly.glb, assembly.json, matrix.csv
+(blocking pairs), precedence.csv
 (steps and their order), precedence.json (ways out of each part), for each --map a .svg, .png and
 .json, for each --free its proof.
 

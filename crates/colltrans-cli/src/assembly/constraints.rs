@@ -49,6 +49,29 @@ pub(super) fn with_constraints(
     Ok(assembly)
 }
 
+/// Returns the assembly with densities in kilograms per cubic metre: of all parts, or of a material or part.
+///
+/// # Errors
+/// A density is not a number or invalid, or neither a material nor a part has the name.
+pub(super) fn with_densities(
+    mut assembly: Assembly,
+    given: &[String],
+) -> Result<Assembly, Failure> {
+    for text in given {
+        let (name, value) = match text.rsplit_once('=') {
+            Some(_) => split_at_equals("--density", text, "NAME=RHO")?,
+            None => ("*", text.trim()),
+        };
+        let density = value.parse().map_err(|_| {
+            usage_failure(format!(
+                "--density {text}: expected RHO or NAME=RHO, in kilograms per cubic metre, such as steel=7850"
+            ))
+        })?;
+        assembly = assembly.with_density(name, density)?;
+    }
+    Ok(assembly)
+}
+
 /// Returns the assembly with roles and tolerances of pairs.
 ///
 /// # Errors

@@ -11,7 +11,7 @@ use colltrans_assembly::audit::{AuditOptions, AuditedPair, PairFinding, examine_
 use colltrans_assembly::fasteners::Unscrewing;
 use colltrans_assembly::hints::find_hints;
 use colltrans_assembly::plan::{Plan, precedence_graph};
-use colltrans_assembly::report::{facts, glb, html};
+use colltrans_assembly::report::{bill_csv, facts, glb, html};
 use colltrans_assembly::{Analysis, Assembly, Bodies, Fit};
 use colltrans_assembly::{map, record, suggest};
 
@@ -68,6 +68,8 @@ fn write_files(
     let mut put = |name: &str, bytes: &[u8]| outputs.write(&folder.join(name), bytes);
     let title = source_title(&arguments.source);
     put("report.html", html::report_page(findings, &title).as_bytes())?;
+    put("instructions.html", html::instructions_page(findings, &title).as_bytes())?;
+    put("bill.csv", bill_csv(findings).as_bytes())?;
     put("disassembly.glb", &glb::plan_animation(findings.bodies.assembly(), &findings.plan))?;
     put("assembly.json", escape_json(&json.to_string()).as_bytes())?;
     put("matrix.csv", findings.matrix.to_csv(findings.bodies).as_bytes())?;
@@ -110,6 +112,8 @@ pub(super) fn check_output_paths(
     let inputs: Vec<&Path> = files.map(PathBuf::as_path).collect();
     let fixed = [
         "report.html",
+        "instructions.html",
+        "bill.csv",
         "disassembly.glb",
         "assembly.json",
         "matrix.csv",

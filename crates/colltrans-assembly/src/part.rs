@@ -393,8 +393,7 @@ impl Assembly {
         let is_meant = |part: &Part| part.material() == Some(name.trim());
         let of_material: Vec<usize> =
             (0..self.parts.len()).filter(|&k| is_meant(&self.parts[k])).collect();
-        let meant =
-            if of_material.is_empty() { self.parts_named(&[name])? } else { of_material };
+        let meant = if of_material.is_empty() { self.parts_named(&[name])? } else { of_material };
         for part in meant {
             self.parts[part].density = Some(density);
         }

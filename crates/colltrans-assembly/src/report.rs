@@ -9,9 +9,9 @@
 //! - `scene`: pictures, with the `lines` of each part. `cut`: a plane through the place where two parts meet.
 
 mod after;
-mod bill;
 #[cfg(feature = "bcf")]
 pub mod bcf;
+mod bill;
 pub mod clashes;
 mod cover;
 mod cut;

@@ -164,13 +164,12 @@ pub(super) fn read_manifest(source: Source) -> Result<Assembly, ReadError> {
             .map_err(|e| contents_error(path, place(&e), json_error_reason(&e)))?
     };
     let metres = manifest.unit.as_deref().and_then(units::unit_in_metres);
-    let mut gathered =
-        PartGatherer {
-            budget: Budget::with_bytes(text.len()),
-            metres,
-            densities: manifest.densities.clone(),
-            ..PartGatherer::default()
-        };
+    let mut gathered = PartGatherer {
+        budget: Budget::with_bytes(text.len()),
+        metres,
+        densities: manifest.densities.clone(),
+        ..PartGatherer::default()
+    };
     for (k, entry) in manifest.parts.iter().enumerate() {
         gathered.add_part(&source, k, entry)?;
     }

@@ -93,8 +93,7 @@ fn assembly_section(r: &Report) -> Markup {
         @if plan.steps.len() > 1 {
             h3 { "Putting it together" }
             p {
-                "The steps in reverse order, with each move reversed; the same proofs apply. The file instructions.html has them \
-                 in pictures"
+                "The steps in reverse order, with each move reversed; the same proofs apply"
                 @if !plan.base.is_empty() { ". It begins with " (r.words.name_list(&plan.base)) }
                 "."
             }
@@ -227,10 +226,9 @@ fn suggestion_texts(r: &Report) -> Vec<String> {
             Some(Role::Glued) => "perhaps glued",
             None => "perhaps only rounded shapes",
         };
-        let remedy = s
-            .fit
-            .tolerance
-            .map(|t| format!("; a tolerance of {} removes the overlap", r.words.fine_length_text(t)));
+        let remedy = s.fit.tolerance.map(|t| {
+            format!("; a tolerance of {} removes the overlap", r.words.fine_length_text(t))
+        });
         format!("{what} ({}){}", s.reason, remedy.unwrap_or_default())
     };
     sheet::pair_texts(r, all.into_iter().map(|s| (s.parts, s.fit.role, text(s))))

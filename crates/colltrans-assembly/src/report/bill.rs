@@ -68,7 +68,7 @@ pub fn bill_csv(f: &Analysis) -> String {
     let unit = f.bodies.assembly().unit().map_or_else(String::new, |unit| format!("{unit}^3"));
     let mut table = Table::new(&COLUMNS);
     for (k, line) in bill_lines(f).iter().enumerate() {
-        let number = |x: Option<f64>| x.map_or(Cell::Text(""), Cell::Number);
+        let number = |x: Option<f64>| x.map_or(Cell::Text(""), |x| Cell::Number(six_digits(x)));
         let count = line.kind.parts.len() as f64;
         let name = words.kind_name(&line.kind.parts);
         let [title, details] = [Fastener::title, Fastener::details]
@@ -137,10 +137,15 @@ pub(super) fn bill_section(r: &Report) -> Markup {
                 @if known == lines.len() { ", " (mass_text(total)) " in all" }
                 @else if known > 0 { ", " (mass_text(total)) " without the " (lines.len() - known) " of unknown mass" }
                 ". Parts of one line have equal shape and material."
-                @if known == 0 { " Masses need a unit of length and a density (--density, or the manifest)." }
+                @if known == 0 { " Masses need a unit of length in the source and a density (--density, or the manifest)." }
             }
         }
     }
+}
+
+/// Rounds a number to six significant digits.
+fn six_digits(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
 }
 
 /// Formats a mass in kilograms, or in grams below one kilogram.
@@ -153,7 +158,11 @@ fn mass_text(kilograms: f64) -> String {
     } else {
         text
     };
-    if text == "0" && value > 0.0 { format!("under 0.001 {unit}") } else { format!("{text} {unit}") }
+    if text == "0" && value > 0.0 {
+        format!("under 0.001 {unit}")
+    } else {
+        format!("{text} {unit}")
+    }
 }
 
 #[cfg(test)]

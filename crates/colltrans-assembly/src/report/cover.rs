@@ -29,8 +29,7 @@ pub(super) fn cover_page(r: &Report, title: &str) -> Markup {
         section.sheet id="cover" {
             h1 { (title) }
             p { (summary_text(r, kinds.len())) }
-            (result_section(r))
-            (notes_section(r))
+            @if r.is_assembly() { (assembly_result(r)) } @else { (result_section(r)) (notes_section(r)) }
             @if !kinds.is_empty() {
                 (exploded_picture(r, &kinds, title))
                 (part_list(r, &kinds))
@@ -106,6 +105,21 @@ fn result_section(r: &Report) -> Markup {
                 @if remaining == 1 { ", and is" } @else { ", and are" }
                 " moved as one. The section after the steps lists them with suggestions."
             }
+        }
+    }
+}
+
+/// Returns the result of the plan for readers who put the assembly together.
+fn assembly_result(r: &Report) -> Markup {
+    let plan = &r.f.plan;
+    html! {
+        @if plan.steps.is_empty() {
+            p.warn { "No order of assembly is known, because no part can be taken out. The report has the reasons." }
+        } @else {
+            p { "The steps are those of the report in reverse order, with reversed moves." }
+        }
+        @for stuck in &plan.interlocked {
+            p.warn { (r.words.group_text(&stuck.parts)) ": how these parts are put together is not known; they are handled as one." }
         }
     }
 }

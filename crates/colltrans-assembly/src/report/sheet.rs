@@ -122,12 +122,11 @@ pub(super) fn first_parts_page(r: &Report) -> Markup {
         numbers: Vec::new(),
         label: format!("The first parts: {}", r.words.name_list(&parts)),
     };
-    let is_whole = r.f.plan.interlocked.is_empty() && r.f.plan.remaining.is_empty();
     html! {
         section.sheet.step id="first" {
             h2 { "Begin with " (r.words.group_text(&parts)) }
             figure { (picture_markup(r.studio.draw_picture(&scene, r.studio.default_viewpoint()))) }
-            @if !is_whole {
+            @if parts.len() > 1 {
                 p.warn { "The plan does not take these parts apart: how they are put together is not known." }
             }
         }
@@ -174,7 +173,11 @@ fn action_text(r: &Report, stage: &Range<usize>) -> String {
     let verb = if r.is_assembly() { "put in" } else { "take out" };
     match r.f.plan.describe_fasteners(r.f.bodies.assembly(), stage) {
         Some(text) if r.f.plan.is_unscrewed(stage) => {
-            if r.is_assembly() { screwed_in(&text) } else { text }
+            if r.is_assembly() {
+                screwed_in(&text)
+            } else {
+                text
+            }
         }
         Some(text) => format!("{verb} {text}"),
         None => format!("{verb} {}", taken_parts_text(r, stage)),

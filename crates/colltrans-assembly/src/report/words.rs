@@ -127,7 +127,8 @@ impl<'a> Words<'a> {
     pub(super) fn direction_text(&self, d: DVec3) -> String {
         let [right, back, up] = self.frame.map(|axis| d.dot(axis));
         let elevation = up.atan2(right.hypot(back)).to_degrees();
-        let rounds_to_zero = |degrees: f64| degrees.abs() < 0.5 * 0.1_f64.powi(ANGLE_DECIMALS as i32);
+        let rounds_to_zero =
+            |degrees: f64| degrees.abs() < 0.5 * 0.1_f64.powi(ANGLE_DECIMALS as i32);
         let vertical = if up > 0.0 { "up" } else { "down" };
         let mut words = Vec::new();
         if rounds_to_zero(90.0 - elevation.abs()) {
@@ -136,11 +137,17 @@ impl<'a> Words<'a> {
             let (along, [main, side]) = match (right.abs() > back.abs(), right > 0.0, back > 0.0) {
                 (true, is_right, is_back) => (
                     back.abs().atan2(right.abs()),
-                    [if is_right { "right" } else { "left" }, if is_back { "back" } else { "front" }],
+                    [
+                        if is_right { "right" } else { "left" },
+                        if is_back { "back" } else { "front" },
+                    ],
                 ),
                 (false, is_right, is_back) => (
                     right.abs().atan2(back.abs()),
-                    [if is_back { "back" } else { "front" }, if is_right { "right" } else { "left" }],
+                    [
+                        if is_back { "back" } else { "front" },
+                        if is_right { "right" } else { "left" },
+                    ],
                 ),
             };
             words.push(format!("towards the {main}"));
@@ -395,12 +402,10 @@ mod tests {
         let assembly = Assembly::default();
         let words = words(&assembly, DVec3::Z);
         let lengths = [0.0, 6.25e-7, 0.006_251_4, 0.012, 12_345.678_912, -0.002_5];
-        let expected =
-            ["0 mm", "under 0.01 mm", "6.25 mm", "12 mm", "12345678.91 mm", "-2.5 mm"];
+        let expected = ["0 mm", "under 0.01 mm", "6.25 mm", "12 mm", "12345678.91 mm", "-2.5 mm"];
         assert_eq!(lengths.map(|x| words.length_text(x)), expected);
         let tolerances = [0.0, 6.25e-7, 1e-4, 0.012_345, 6e-15];
-        let expected =
-            ["0 mm", "0.00063 mm", "0.1 mm", "12.35 mm", "under 0.000000001 mm"];
+        let expected = ["0 mm", "0.00063 mm", "0.1 mm", "12.35 mm", "under 0.000000001 mm"];
         assert_eq!(tolerances.map(|x| words.fine_length_text(x)), expected);
         assert_eq!([2e-9, 5e-6].map(|x| words.volume_text(x)), ["2 mm³", "5 cm³"]);
         assert_eq!(words.area_text(1.23456e-10), "0.0001235 mm²");

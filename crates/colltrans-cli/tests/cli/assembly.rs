@@ -157,13 +157,13 @@ fn answer_is_equal_for_all_thread_counts() {
         (text, names, bytes)
     };
     let once = ask(&data(), &["gearbox_small"], "1");
-    let names = ["assembly.json", "disassembly.glb", "matrix.csv"];
-    let more = ["precedence.csv", "precedence.json", "report.html"];
+    let names = ["assembly.json", "bill.csv", "disassembly.glb", "instructions.html"];
+    let more = ["matrix.csv", "precedence.csv", "precedence.json", "report.html"];
     assert_eq!(once.1, [names, more].concat());
     assert!(once == ask(&data(), &["gearbox_small"], "3"), "three threads");
     let mapped = ["two.toml", "--map", "low", "--samples", "100"];
     let once = ask(small.path(), &mapped, "1");
-    assert_eq!(once.1[2..5], ["map-low.json", "map-low.png", "map-low.svg"]);
+    assert_eq!(once.1[4..7], ["map-low.json", "map-low.png", "map-low.svg"]);
     assert!(once == ask(small.path(), &mapped, "3"), "three threads, with a map");
 }
 
@@ -194,6 +194,91 @@ fn output_files_are_self_contained() {
         (names(&written["plan"][0]["parts"]), names(&written["last"])),
         (vec!["high"], vec!["low"])
     );
+}
+
+#[test]
+fn bill_counts_like_parts_and_has_masses_where_density_is_known() {
+    let folder = stacked();
+    let place = folder.path();
+    let part = |name: &str, z: f64, material: &str| {
+        format!(
+            "[[part]]\nfile = 'cube.off'\nname = '{name}'\ntranslation = [0, 0, {z}]\n{material}\n"
+        )
+    };
+    let manifest = "unit = 'cm'\ndensities = { steel = 7850 }\n".to_owned()
+        + &part("block_1", 0.0, "material = 'steel'")
+        + &part("block_2", 1.0, "material = 'steel'")
+        + &part("pad", 2.0, "material = '=rubber'")
+        + &part("cap", 3.0, "material = 'steel'\ndensity = 8000");
+    std::fs::write(place.join("bill.toml"), manifest).unwrap();
+    let bill = |arguments: &[&str]| {
+        answered(place, &[&["bill.toml", "-o", "out"], arguments].concat());
+        let table = std::fs::read_to_string(place.join("out/bill.csv")).unwrap();
+        // All but the number and the steps, which depend on the plan.
+        let rows = table.lines().map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            cells[1..cells.len() - 1].join(",")
+        });
+        let mut rows: Vec<String> = rows.collect();
+        rows[1..].sort();
+        rows
+    };
+    let head =
+        "name,quantity,fastener,form,material,volume,unit,density_kg_per_m3,mass_kg,total_mass_kg";
+    let known = [
+        head,
+        "block,2,,,steel,1,cm^3,7850,0.00785,0.0157",
+        "cap,1,,,steel,1,cm^3,8000,0.008,0.008",
+        "pad,1,,,'=rubber,1,cm^3,,,",
+    ];
+    assert_eq!(bill(&[]), known);
+    let page = std::fs::read_to_string(place.join("out/report.html")).unwrap();
+    assert!(page.contains("4 parts in 3 lines, 23.7 g without the 1 of unknown mass."));
+    // A material, then a part, then all parts.
+    let of_rubber = bill(&["--density", "=rubber=1200", "--density", "block_*=1000"]);
+    assert_eq!(of_rubber[1], "block,2,,,steel,1,cm^3,1000,0.001,0.002");
+    assert_eq!(of_rubber[3], "pad,1,,,'=rubber,1,cm^3,1200,0.0012,0.0012");
+    assert!(bill(&["--density", "900"])[1..].iter().all(|row| row.contains(",900,0.0009,")));
+    let wrong = [
+        ("tin=7000", "unknown part tin"),
+        ("steel=", "expected RHO or NAME=RHO"),
+        ("steel=-1", "invalid density -1"),
+    ];
+    for (given, message) in wrong {
+        refused(place, &["bill.toml", "--density", given], 2, &[message]);
+    }
+    std::fs::write(place.join("bad.toml"), part("a", 0.0, "density = -3")).unwrap();
+    refused(place, &["bad.toml"], 3, &["invalid density -3.0 of a"]);
+    // Without a unit of length there is no mass.
+    std::fs::write(place.join("bill.toml"), part("a", 0.0, "density = 3")).unwrap();
+    assert_eq!(bill(&[])[1], "a,1,,,,1,,3,,");
+}
+
+#[test]
+fn instructions_have_steps_of_assembly_in_reverse_order() {
+    let folder = stacked();
+    answered(&data(), &["gearbox_small", "-o", folder.path().join("out").to_str().unwrap()]);
+    let page = std::fs::read_to_string(folder.path().join("out/instructions.html")).unwrap();
+    let headings = page.split("<h2>").skip(1).map(|rest| rest.split("</h2>").next().unwrap());
+    let steps: Vec<&str> = headings.filter(|text| text.starts_with("Step")).collect();
+    assert_eq!(steps[0], "Step 1: put in rear_bush");
+    assert_eq!(steps.last(), Some(&"Steps 7–10: screw in 4 x M4 x 16 (bolt)"));
+    assert!(page.contains("Begin with housing"));
+    assert!(page.contains("down (−z)") && !page.contains("up (+z)<"));
+    assert!(page.contains("Screwed in by 12, 17.1 turns of 0.7"));
+    // Each step shows where its parts are in the whole.
+    assert_eq!(page.matches("class=\"where\"").count(), steps.len());
+    // The options to try are in the text and in the report, with the same words.
+    let text = answered(&data(), &["gearbox_small"]);
+    let report = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    let tried: Vec<&str> =
+        text.lines().skip_while(|line| *line != "to try").skip(1).map(str::trim).collect();
+    assert!(!tried.is_empty());
+    for line in tried {
+        let (option, reason) = line.split_once(": ").unwrap();
+        let sentence = format!("<p>To try: <code>{option}</code>, because {reason}.</p>");
+        assert!(report.contains(&sentence), "{sentence}");
+    }
 }
 
 #[test]

@@ -53,6 +53,7 @@ pub(super) fn step_page(r: &Report, repeats: &[&Range<usize>]) -> Markup {
                     @if r.is_assembly() { "for what step " (r.step_numbers(&[within])) " puts in: " (group) }
                     @else { "from what step " (r.step_numbers(&[within])) " took out: " (group) }
                     "."
+                    @if let Some(first) = first_parts_of_group(r, stage) { " It begins with " (r.words.name_list(&first)) "." }
                 }
             }
             @if has_one_picture(r, stage) { (stage_picture(r, stage)) } @else { (move_pictures(r, stage.start)) }
@@ -131,6 +132,20 @@ pub(super) fn first_parts_page(r: &Report) -> Markup {
             }
         }
     }
+}
+
+/// Returns the parts with which a group is put together, if a stage is the first one of its group in instructions.
+fn first_parts_of_group(r: &Report, stage: &Range<usize>) -> Option<Vec<usize>> {
+    let steps = &r.f.plan.steps;
+    let within = steps[stage.start].group_step?;
+    let is_first = !steps[stage.end..].iter().any(|step| step.group_step == Some(within));
+    let inner: Vec<usize> = steps
+        .iter()
+        .filter(|step| step.group_step == Some(within))
+        .flat_map(|step| step.parts.iter().copied())
+        .collect();
+    let rest = steps[within].parts.iter().copied().filter(|part| !inner.contains(part));
+    (r.is_assembly() && is_first).then(|| rest.collect())
 }
 
 /// Returns a small picture of the whole assembly with the parts of a stage in colour, at their places.

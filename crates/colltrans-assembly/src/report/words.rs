@@ -23,7 +23,7 @@ const MAX_RUNS: usize = 5;
 const MIN_SIDE: f64 = 1e-6;
 /// Decimals of lengths in each unit: 0.01 mm, or a little finer.
 const DECIMALS: [(&str, usize); 6] =
-    [("mm", 2), ("cm", 3), ("m", 4), ("in", 3), ("ft", 4), ("micron", 1)];
+    [("mm", 2), ("cm", 3), ("m", 3), ("in", 3), ("ft", 3), ("micron", 1)];
 /// Significant digits of the size of an assembly by which lengths are rounded if the unit is unknown or large.
 const SIZE_DIGITS: i32 = 4;
 /// Maximum number of decimals of a small length.

@@ -266,6 +266,15 @@ fn instructions_have_steps_of_assembly_in_reverse_order() {
     assert!(page.contains("Begin with housing"));
     assert!(page.contains("down (−z)") && !page.contains("up (+z)<"));
     assert!(page.contains("Screwed in by 12, 17.1 turns of 0.7"));
+    // A subassembly is put together on the bench before it is put in.
+    let parts = ["gearbox_small", "--subassembly", "drive=shaft,gear,spacer", "--no-proofs"];
+    let out = folder.path().join("drive");
+    answered(&data(), &[&parts[..], &["-o", out.to_str().unwrap()]].concat());
+    let drive = std::fs::read_to_string(out.join("instructions.html")).unwrap();
+    let bench = "On the bench, for what step 4 puts in: drive.";
+    assert_eq!(drive.matches(bench).count(), 2);
+    assert!(drive.contains(&format!("{bench} It begins with shaft.</p>")));
+    assert!(drive.contains(">Step 4: put in drive</h2>"));
     // Each step shows where its parts are in the whole.
     assert_eq!(page.matches("class=\"where\"").count(), steps.len());
     // The options to try are in the text and in the report, with the same words.

@@ -127,8 +127,9 @@ impl<'a> Words<'a> {
     pub(super) fn direction_text(&self, d: DVec3) -> String {
         let [right, back, up] = self.frame.map(|axis| d.dot(axis));
         let elevation = up.atan2(right.hypot(back)).to_degrees();
-        let rounds_to_zero =
-            |degrees: f64| degrees.abs() < 0.5 * 0.1_f64.powi(ANGLE_DECIMALS as i32);
+        let rounds_to_zero = |degrees: f64| {
+            drawing_number(degrees.abs(), ANGLE_DECIMALS).starts_with("under") || degrees == 0.0
+        };
         let vertical = if up > 0.0 { "up" } else { "down" };
         let mut words = Vec::new();
         if rounds_to_zero(90.0 - elevation.abs()) {

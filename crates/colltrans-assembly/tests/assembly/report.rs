@@ -214,7 +214,7 @@ fn report_has_no_exponents() {
     let found: Vec<usize> =
         text.match_indices('e').map(|(at, _)| at).filter(|&at| is_exponent(at)).collect();
     assert_eq!(found, [0; 0], "{text}");
-    assert!(text.contains("0.63 × 12 × 1.25 mm overall"), "{text}");
+    assert!(text.contains("0.62 × 12 × 1.25 mm overall"), "{text}");
     assert!(text.contains("4.688 mm³"), "{text}");
 }
 

@@ -57,7 +57,9 @@ fn step_pages(r: &Report) -> Markup {
     }
     if r.is_assembly() {
         pages.reverse();
-        pages.iter_mut().for_each(|repeats| repeats.reverse());
+        for repeats in &mut pages {
+            repeats.reverse();
+        }
     }
     let sheets: Vec<Vec<Markup>> = sheet::like_pages(r, &pages)
         .into_par_iter()

@@ -57,7 +57,7 @@ const HEX_KEYS: [[f64; 3]; 15] = [
     [19.0, 199.0, 89.0],
 ];
 /// Numbers of hexalobular sockets and their largest diameters.
-const HEXALOBULAR: [(u32, f64); 15] = [
+const HEXALOBULAR: [(u32, f64); 16] = [
     (5, 1.42),
     (6, 1.7),
     (7, 1.99),
@@ -67,6 +67,7 @@ const HEXALOBULAR: [(u32, f64); 15] = [
     (15, 3.27),
     (20, 3.86),
     (25, 4.43),
+    (27, 5.0),
     (30, 5.52),
     (40, 6.65),
     (45, 7.82),

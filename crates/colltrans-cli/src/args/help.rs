@@ -544,11 +544,9 @@ const JSON_ASSEMBLY: &str = r#"Answer of assembly:
   Parts that made room before go "back"."#;
 
 pub(super) const ASSEMBLY_NOTES: &str = "\
-With -o DIR: report.html, instructions.html (assembly, for print), bill.csv (bill of materials, with
-masses where --density or the manifest has densities), disassembly.glb, assembly.json, matrix.csv
-(blocking pairs), precedence.csv
-(steps and their order), precedence.json (ways out of each part), for each --map a .svg, .png and
-.json, for each --free its proof.
+With -o DIR: report.html, instructions.html (assembly, for print), bill.csv, disassembly.glb,
+assembly.json, matrix.csv (blocking pairs), precedence.csv (steps), precedence.json (ways out of
+each part), for each --map a .svg, .png and .json, for each --free its proof.
 
 Examples:
     colltrans assembly parts/ -o plan
@@ -561,8 +559,7 @@ Findings, the worst first:
   interfering  the parts overlap, also after each is shrunk by half the tolerance; `depth` bounds the
                shortest translation that separates them, `translation` of the first part is the
                shortest one found
-  contained    one part lies inside the other; their surfaces have isolated points and edges in
-               common at most
+  contained    one part lies inside the other; their surfaces touch at points and edges at most
   touching     they are at most the tolerance apart, or the shrunk parts do not overlap, or their role
                permits it. Sharp tips are shrunk by more: up to 32 times as deep as the tolerance
   apart        they are nearer than the clearance
@@ -580,8 +577,7 @@ With --json one object:
   pairs   [{\"parts\": [a, b], \"finding\", \"violation\", \"clearance\", \"tolerance\", \"role\"}] with
           - of touching and apart: \"distance\", \"points\";
           - of the others: \"depth\", \"translation\", \"volume\", \"box\", \"least_tolerance\", \"point\";
-          - of contained also: \"inner\", \"wall\" (the distance of both surfaces), \"wall_points\" (their
-            nearest points);
+          - of contained also: \"inner\", \"wall\" (distance of both surfaces), \"wall_points\";
           - \"open\": the parts with open shells, whose volume and containment are those of closed shells;
           - with --proofs: \"proofs\", the file of each claim (\"distance\", \"depth\", \"common_part\"), and
             \"unproven\", the reason why a claim has no proof.

@@ -408,10 +408,10 @@ fn stage_facts(r: &Report, stage: &Range<usize>) -> Markup {
                 div { dt { "Thread" } dd { (sentence(&if r.is_assembly() { screwed_in(&turns) } else { turns })) } }
             }
             @for tool in r.f.plan.describe_tools(r.f.bodies.assembly(), stage) {
-                div { dt { "Reach" } dd { (sentence(&tool)) } }
+                div { dt { "Tool" } dd { (sentence(tool.trim_start_matches("tool: "))) } }
             }
             @for reason in r.f.plan.unproven_reasons(r.f.bodies, stage, |parts| r.words.name_list(parts)) {
-                div { dt { "Not proven, because" } dd { (reason) } }
+                div { dt { "Assumed" } dd { (sentence(&reason)) } }
             }
             div { dt { "Needs" } dd { @if after.is_empty() { "no earlier step" } @else { (r.step_list(&after)) } } }
             div { dt { "Round" } dd { (number_runs(&rounds)) " of " (r.rounds.iter().max().map_or(0, |k| k + 1)) } }

@@ -66,7 +66,7 @@ pub(crate) struct AssemblyArguments {
     /// Handling times in seconds, as JSON; replaces entries of the table
     #[arg(long, value_name = "FILE.json", hide_short_help = true)]
     pub(crate) times: Option<PathBuf>,
-    /// Density in kg/m3 of all parts, of a material or of a part, for bill.csv
+    /// Density in kg/m3 of all parts, of a material or of a part
     #[arg(long, value_name = "[NAME=]RHO", allow_hyphen_values = true, hide_short_help = true)]
     pub(crate) density: Vec<String>,
     /// Number of threads [default: all cores]; the answer is the same

@@ -612,9 +612,9 @@ impl Assembly {
         let planned =
             Planned { assembly: self.0.clone(), choices, question, plan: plan.clone(), times };
         let steps = plan.steps.into_iter();
-        let names = |parts: &[usize]| self.0.part_names(parts).join(", ");
+        let list = |parts: &[usize]| self.0.part_names(parts).join(", ");
         let tool = |reach: ToolReach| {
-            let words = reach.describe(names);
+            let words = reach.describe(list);
             (reach.tool, reach.blockers, words)
         };
         let row = |s: Step| {

@@ -1149,7 +1149,11 @@ class Assembly:
                 for parts, d, travel, travel_bounds, (
                     path,
                     back,
-                ), within, after, ignored, passed, (falls, off_balance, surfaces), turns, tool in steps
+                ), within, after, ignored, passed, (
+                    falls,
+                    off_balance,
+                    surfaces,
+                ), turns, tool in steps
             ],
             [Stage(takes, range(*of), travel) for takes, of, travel in stages],
             self._names(last),

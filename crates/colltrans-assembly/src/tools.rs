@@ -1,6 +1,6 @@
 //! Hand tools that turn or spread fasteners, and whether they reach them.
 //!
-//! - Each fastener has the tools that fit it ([`table`]), each at several *positions* of its lever. A position sweeps
+//! - Each fastener has the tools that fit it (module `table`), each at several *positions* of its lever. A position sweeps
 //!   convex prisms: rods about the axis, and the lever over the angle that it turns at a time. All are extended along
 //!   the axis by the way on which the fastener still turns.
 //! - The prisms enclose the tool: their sides are tangents of its circles. They are tested exactly against the parts as

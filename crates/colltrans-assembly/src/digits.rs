@@ -19,5 +19,10 @@ pub(crate) fn rounded_number(x: f64, count: i32) -> String {
         return format!("{x:.2e}");
     }
     let text = format!("{x:.*}", (count - 1 - magnitude).max(0) as usize);
+    without_trailing_zeros(text)
+}
+
+/// Returns a decimal number without zeros at the end of its decimals.
+pub(crate) fn without_trailing_zeros(text: String) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }

@@ -149,6 +149,11 @@ impl FastenerKind {
 }
 
 impl Head {
+    /// Checks whether a tool grips the head from outside.
+    pub const fn is_hexagonal(self) -> bool {
+        matches!(self, Self::Hexagon | Self::FlangedHexagon)
+    }
+
     /// Returns the form as a word.
     pub const fn name(self) -> &'static str {
         match self {
@@ -364,6 +369,11 @@ impl Fasteners {
     /// Returns the connections by screws and dowels; empty unless [`Self::with_holds`] found them.
     pub fn holds(&self) -> &[Hold] {
         &self.holds
+    }
+
+    /// Returns the first connection whose screw or dowel, or whose seat, is this part; `None` without one.
+    pub(crate) fn hold_of(&self, part: usize) -> Option<&Hold> {
+        self.holds.iter().find(|hold| hold.fastener == part || hold.seat == part)
     }
 
     /// Returns the fastener that a part is; `None` if it is none.

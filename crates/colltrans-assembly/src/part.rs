@@ -179,6 +179,11 @@ impl Part {
         self.density
     }
 
+    /// Checks whether a density in kilograms per cubic metre is valid: from 0 to below 1e9.
+    pub fn is_density(value: f64) -> bool {
+        (0.0..1e9).contains(&value)
+    }
+
     /// Returns descriptions of repairs and of remaining defects of the surface.
     pub fn defects(&self) -> &[String] {
         &self.defects
@@ -387,7 +392,7 @@ impl Assembly {
     /// [`AssemblyError::InvalidValue`] if the density is negative or not finite, and
     /// [`AssemblyError::UnknownPart`] if no material and no part has the name.
     pub fn with_density(mut self, name: &str, density: f64) -> Result<Self, AssemblyError> {
-        if !(density.is_finite() && (0.0..1e9).contains(&density)) {
+        if !Part::is_density(density) {
             return Err(AssemblyError::InvalidValue { what: "density", value: density });
         }
         let is_meant = |part: &Part| part.material() == Some(name.trim());

@@ -219,12 +219,11 @@ fn step_json(assembly: &Assembly, step: &Step) -> Value {
         object["unscrew"] = unscrewing_json(turns);
     }
     if let Some(reach) = &step.tool {
-        let names = |parts: &[usize]| assembly.part_names(parts).join(", ");
         object["tool"] = json!({
             "name": reach.tool,
             "reaches": reach.blockers.is_empty(),
             "blockers": assembly.part_names(&reach.blockers),
-            "words": reach.describe(names),
+            "words": reach.describe(assembly),
         });
     }
     if !step.ignored.is_empty() {

@@ -69,7 +69,7 @@ pub fn suggest_fits(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
     let axes = |&part: &usize| (part, round_axes(bodies.assembly().parts()[part].solid()));
     let axes: BTreeMap<usize, Vec<DVec3>> = used.par_iter().map(axes).collect();
     let found = candidates.par_iter().filter_map(|overlap| {
-        let own = overlap.parts.map(|part| axes[&part].clone()).concat();
+        let own = overlap.parts.map(|part| &axes[&part][..]).concat();
         suggest_fit(bodies, &rings, overlap, &own)
     });
     let found: Vec<Suggestion> = found.collect();

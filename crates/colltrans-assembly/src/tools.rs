@@ -69,19 +69,20 @@ pub struct ToolReach {
 }
 
 impl ToolReach {
-    /// Returns a description. `names` joins the names of parts.
-    pub fn describe(&self, names: impl Fn(&[usize]) -> String) -> String {
+    /// Returns the tool and whether it reaches, for a text that says that this is about a tool.
+    pub fn finding(&self, assembly: &Assembly) -> String {
+        let (tool, names) = (&self.tool, assembly.part_names(&self.blockers).join(", "));
         match self.blockers.len() {
-            0 => format!("tool: {}; it reaches, which is proven", self.tool),
-            1 => {
-                format!("no tool reaches: {} is in the way of {}", names(&self.blockers), self.tool)
-            }
-            _ => format!(
-                "no tool reaches: {} are in the way of {}",
-                names(&self.blockers),
-                self.tool
-            ),
+            0 => format!("{tool}; it reaches, which is proven"),
+            1 => format!("no tool reaches: {names} is in the way of {tool}"),
+            _ => format!("no tool reaches: {names} are in the way of {tool}"),
         }
+    }
+
+    /// Returns a description.
+    pub fn describe(&self, assembly: &Assembly) -> String {
+        let about = if self.blockers.is_empty() { "tool: " } else { "" };
+        format!("{about}{}", self.finding(assembly))
     }
 }
 
@@ -134,7 +135,7 @@ impl Tools {
     ) -> Vec<[usize; 2]> {
         let holds = |part: usize| {
             fasteners.get(part).is_some_and(|of| of.kind == FastenerKind::Circlip)
-                || fasteners.holds().iter().any(|of| of.fastener == part || of.seat == part)
+                || fasteners.hold_of(part).is_some()
         };
         let smallest = |(own, tools): (usize, &Vec<FittingTool>)| {
             let sets = || tools.iter().flat_map(|tool| &tool.blockers);
@@ -171,16 +172,14 @@ impl Scene<'_> {
     /// Returns the tools that fit a fastener, with the parts in their way.
     fn fitting_tools(&self, part: usize, fastener: &Fastener) -> Vec<FittingTool> {
         let ([origin, axis], [low, high], scale) = (fastener.axis, fastener.range, self.scale);
-        let holds = self.fasteners.holds().iter();
-        let hold = holds.into_iter().find(|hold| hold.fastener == part || hold.seat == part);
+        let hold = self.fasteners.hold_of(part);
         let way = hold.map_or(0.0, |hold| hold.engaged.max(0.0));
         let grip = |at: f64, out: DVec3| Grip { point: origin + axis * at, out, way };
         let across = fastener.width * scale;
         let (shapes, grips, mut inside) = match fastener.kind {
             FastenerKind::Screw => {
-                let is_hexagon =
-                    matches!(fastener.head, Some(Head::Hexagon | Head::FlangedHexagon));
-                let is_outside = is_hexagon && fastener.drive.is_none();
+                let is_outside =
+                    fastener.drive.is_none() && fastener.head.is_some_and(Head::is_hexagonal);
                 let gap = (1.0 - HEXAGON_GAP) * fastener.head_height;
                 let at = if is_outside { high - gap } else { high };
                 (screw_tools(fastener, scale), vec![grip(at, axis)], Vec::new())
@@ -289,7 +288,7 @@ fn screw_tools(screw: &Fastener, scale: f64) -> Vec<ToolShape> {
                 Drive::Slot => table::for_slot(width, head),
             }
         }
-        (None, Some(Head::Hexagon | Head::FlangedHexagon)) => table::for_hexagon(head),
+        (None, Some(form)) if form.is_hexagonal() => table::for_hexagon(head),
         (None, Some(form)) => {
             screw.metric.map_or_else(Vec::new, |metric| table::for_plain_head(form, metric))
         }

@@ -612,9 +612,8 @@ impl Assembly {
         let planned =
             Planned { assembly: self.0.clone(), choices, question, plan: plan.clone(), times };
         let steps = plan.steps.into_iter();
-        let list = |parts: &[usize]| self.0.part_names(parts).join(", ");
         let tool = |reach: ToolReach| {
-            let words = reach.describe(list);
+            let words = reach.describe(&self.0);
             (reach.tool, reach.blockers, words)
         };
         let row = |s: Step| {

@@ -21,7 +21,7 @@ use colltrans_assembly::AssemblyError;
 use colltrans_assembly::constraints::DEFAULT_FORBIDDEN_DEGREES;
 use colltrans_assembly::roles::{PairFit, Role};
 use colltrans_assembly::units;
-use colltrans_assembly::{Assembly, Ignored};
+use colltrans_assembly::{Assembly, Ignored, Part};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object (manifest)")]
@@ -330,7 +330,7 @@ impl PartGatherer {
             let of_material =
                 entry.material.as_ref().and_then(|name| self.densities.get(name).copied());
             let density = entry.density.or(of_material);
-            if let Some(value) = density.filter(|d| !(0.0..1e9).contains(d)) {
+            if let Some(value) = density.filter(|value| !Part::is_density(*value)) {
                 return Err(refused(format!(
                     "invalid density {value:?} of {name}; accepted: kilograms per cubic metre, from 0 to below 1e9"
                 )));

@@ -239,7 +239,7 @@ fn screw_shape(profile: &mut Profile, rows: &[Row]) -> Option<Shape> {
     } else {
         Head::Rounded
     };
-    let is_hexagonal = matches!(form, Head::Hexagon | Head::FlangedHexagon);
+    let is_hexagonal = form.is_hexagonal();
     if share(&head, |row| row.outer.cover > 0.9) < 0.6 && !is_hexagonal {
         return None;
     }

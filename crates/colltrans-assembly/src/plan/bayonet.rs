@@ -17,9 +17,8 @@ use super::step::{Leg, Turn, TurnProof};
 use crate::bodies::{Bodies, ScrewOutcome};
 use crate::boxes::value_range;
 use crate::error::AssemblyError;
-use crate::threads::is_rotationally_symmetric;
+use crate::threads::{is_rotationally_symmetric, round_axes};
 use crate::watch::Watch;
-use crate::{cylinders, inertia};
 
 /// Maximum number of axes of each part.
 const MAX_AXES: usize = 3;
@@ -93,8 +92,7 @@ pub(super) fn search_bayonet(
 fn candidate_axes(bodies: &Bodies, part: usize) -> Vec<[DVec3; 2]> {
     let solid = bodies.assembly().parts()[part].solid();
     let mut found: Vec<DVec3> = Vec::new();
-    let cylinders = cylinders::cylinder_axes(solid).into_iter().map(|(_, axis)| axis);
-    for axis in cylinders.chain(inertia::principal_axes(solid)) {
+    for axis in round_axes(solid) {
         if found.len() < MAX_AXES && !found.iter().any(|a| a.cross(axis).length() < 1e-6) {
             found.push(axis);
         }

@@ -18,6 +18,8 @@ pub(super) struct KnownParts {
     /// For each part, the first part with the same shape.
     pub(super) likes: Vec<usize>,
     pub(super) fasteners: Fasteners,
+    /// Pairs of which the first part leaves before or together with the second: what fasteners hold.
+    held: Vec<[usize; 2]>,
     tools: Tools,
     /// Pairs of which the first part leaves before the second, a fastener, so that a tool reaches it.
     tool_pairs: Vec<[usize; 2]>,
@@ -37,18 +39,17 @@ impl KnownParts {
         let by_holds = assembly.constraints().with_preferred(&held);
         let preferred = [by_holds.with_preferred(&tool_pairs), by_holds];
         let likes = first_identical_parts(assembly);
-        Ok(Self { likes, fasteners, tools, tool_pairs, preferred })
+        Ok(Self { likes, fasteners, held, tools, tool_pairs, preferred })
     }
 
     /// Returns the screws that hold some parts, in increasing order: none of these parts and none of the base.
     pub(super) fn screws_of(&self, parts: &[usize], is_base: &[bool]) -> Vec<usize> {
-        let holds = self.fasteners.holds().iter();
-        let pairs = holds.flat_map(|hold| hold.order_pairs(&self.fasteners));
         let is_screw = |&[first, held]: &[usize; 2]| {
             let kind = self.fasteners.get(first).map(|fastener| fastener.kind);
             kind == Some(FastenerKind::Screw) && parts.contains(&held)
         };
-        let mut screws: Vec<usize> = pairs.filter(is_screw).map(|[first, _]| first).collect();
+        let pairs = self.held.iter().filter(|pair| is_screw(pair));
+        let mut screws: Vec<usize> = pairs.map(|[first, _]| *first).collect();
         screws.retain(|screw| !parts.contains(screw) && !is_base[*screw]);
         screws.sort_unstable();
         screws.dedup();
@@ -82,9 +83,8 @@ impl KnownParts {
         parts: &[usize],
         present: &[bool],
     ) -> Option<ToolReach> {
-        let ([part], first) = (parts, path.first()?) else { return None };
-        let is_own = first.parts == parts;
-        is_own.then(|| self.tools.reach(*part, first.direction, |part| present[part])).flatten()
+        let (part, first) = single_part_move(path, parts)?;
+        self.tools.reach(part, first.direction, |part| present[part])
     }
 
     /// Returns a plan with these properties.
@@ -100,12 +100,19 @@ impl KnownParts {
         parts: &[usize],
         present: &[bool],
     ) -> Option<Unscrewing> {
-        let ([part], first) = (parts, path.first()?) else { return None };
-        if first.parts != parts || path.iter().any(|leg| leg.turn.is_some()) {
+        let (part, first) = single_part_move(path, parts)?;
+        if path.iter().any(|leg| leg.turn.is_some()) {
             return None;
         }
         let is_present = |part: usize| present[part];
-        let found = Unscrewing::of_part(&self.fasteners, *part, first.direction, is_present)?;
+        let found = Unscrewing::of_part(&self.fasteners, part, first.direction, is_present)?;
         (path.len() == 1 || found.length <= first.travel).then_some(found)
     }
+}
+
+/// Returns the only one of some parts, and the first move of a path; `None` if there are several parts, or if other
+/// parts move first.
+fn single_part_move<'p>(path: &'p [Leg], parts: &[usize]) -> Option<(usize, &'p Leg)> {
+    let ([part], first) = (parts, path.first()?) else { return None };
+    (first.parts == parts).then_some((*part, first))
 }

@@ -90,7 +90,6 @@ pub fn remove<'a>(
         )
     };
     let mut obstacles = known.obstacles_of(&[&parts[..], &screws].concat(), &is_base);
-    obstacles.retain(|part| !screws.contains(part));
     let mut fasteners = screws;
     let (mut plan, mut single) = plan_of(&[&parts[..], &fasteners, &obstacles].concat())?;
     // What cannot be removed stays: first the parts in the way of tools, then the screws.

@@ -9,6 +9,7 @@ use crate::bodies::Bodies;
 use crate::fasteners::{FastenerKind, Unscrewing};
 use crate::identical::{common_name, group_identical_pairs};
 use crate::part::Assembly;
+use crate::tools::ToolReach;
 
 /// Maximum difference of the numbers of turns within a stage.
 const SAME_TURNS: f64 = 0.01;
@@ -155,12 +156,7 @@ impl Plan {
         stage: &Range<usize>,
         describe: impl Fn(&Unscrewing) -> String,
     ) -> Vec<String> {
-        let mut all: Vec<String> = Vec::new();
-        for step in &self.steps[stage.clone()] {
-            let text = step.unscrewing.as_ref().map(&describe);
-            all.extend(text.filter(|text| !all.contains(text)));
-        }
-        all
+        self.distinct_texts(stage, |step| step.unscrewing.as_ref().map(&describe))
     }
 
     /// Returns the reasons why the moves of some steps are not proven for the parts as drawn: open surfaces, and
@@ -195,12 +191,23 @@ impl Plan {
     }
 
     /// Returns descriptions of the tools of a stage, each once.
-    pub fn describe_tools(&self, assembly: &Assembly, stage: &Range<usize>) -> Vec<String> {
-        let names = |parts: &[usize]| assembly.part_names(parts).join(", ");
+    pub fn describe_tools(
+        &self,
+        stage: &Range<usize>,
+        describe: impl Fn(&ToolReach) -> String,
+    ) -> Vec<String> {
+        self.distinct_texts(stage, |step| step.tool.as_ref().map(&describe))
+    }
+
+    /// Returns the texts of the steps of a stage, each once.
+    fn distinct_texts(
+        &self,
+        stage: &Range<usize>,
+        text: impl Fn(&Step) -> Option<String>,
+    ) -> Vec<String> {
         let mut all: Vec<String> = Vec::new();
         for step in &self.steps[stage.clone()] {
-            let text = step.tool.as_ref().map(|reach| reach.describe(names));
-            all.extend(text.filter(|text| !all.contains(text)));
+            all.extend(text(step).filter(|text| !all.contains(text)));
         }
         all
     }

@@ -6,7 +6,7 @@
 use maud::{Markup, html};
 
 use super::kinds::{Kind, kinds};
-use super::words::Words;
+use super::words::{Words, drawing_number};
 use super::{Analysis, Report};
 use crate::csv::{Cell, Table};
 use crate::fasteners::Fastener;
@@ -151,18 +151,8 @@ fn six_digits(x: f64) -> f64 {
 /// Formats a mass in kilograms, or in grams below one kilogram.
 fn mass_text(kilograms: f64) -> String {
     let (value, unit) = if kilograms < 1.0 { (kilograms * 1e3, "g") } else { (kilograms, "kg") };
-    let digits = if value < 10.0 { 3 } else { 1 };
-    let text = format!("{value:.digits$}");
-    let text = if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    };
-    if text == "0" && value > 0.0 {
-        format!("under 0.001 {unit}")
-    } else {
-        format!("{text} {unit}")
-    }
+    let decimals = if value < 10.0 { 3 } else { 1 };
+    format!("{} {unit}", drawing_number(value, decimals))
 }
 
 #[cfg(test)]

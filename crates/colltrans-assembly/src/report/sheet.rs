@@ -407,8 +407,8 @@ fn stage_facts(r: &Report, stage: &Range<usize>) -> Markup {
             @for turns in r.f.plan.describe_unscrewing(stage, |turns| turns.describe(|x| r.words.length_text(x))) {
                 div { dt { "Thread" } dd { (sentence(&if r.is_assembly() { screwed_in(&turns) } else { turns })) } }
             }
-            @for tool in r.f.plan.describe_tools(r.f.bodies.assembly(), stage) {
-                div { dt { "Tool" } dd { (sentence(tool.trim_start_matches("tool: "))) } }
+            @for tool in r.f.plan.describe_tools(stage, |reach| reach.finding(r.f.bodies.assembly())) {
+                div { dt { "Tool" } dd { (sentence(&tool)) } }
             }
             @for reason in r.f.plan.unproven_reasons(r.f.bodies, stage, |parts| r.words.name_list(parts)) {
                 div { dt { "Assumed" } dd { (sentence(&reason)) } }

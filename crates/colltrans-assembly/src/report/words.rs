@@ -6,6 +6,7 @@ use std::ops::Range;
 use glam::{DQuat, DVec3};
 
 use super::{Analysis, direction_name, short_number};
+use crate::digits::without_trailing_zeros;
 use crate::identical::common_name;
 use crate::part::Assembly;
 use crate::plan::Leg;
@@ -296,16 +297,11 @@ fn length_decimals(unit: &str, size: f64) -> usize {
 
 /// Formats a number with at most this many decimals and without an exponent. A number that would become zero is
 /// "under" the smallest one.
-fn drawing_number(x: f64, decimals: usize) -> String {
+pub(super) fn drawing_number(x: f64, decimals: usize) -> String {
     if !x.is_finite() {
         return "∞".into();
     }
-    let text = format!("{x:.decimals$}");
-    let text = if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    };
+    let text = without_trailing_zeros(format!("{x:.decimals$}"));
     match &text[..] {
         "0" | "-0" if x != 0.0 => {
             format!("under {:.decimals$}", 0.1_f64.powi(i32::try_from(decimals).unwrap_or(0)))

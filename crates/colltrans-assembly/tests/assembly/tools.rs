@@ -80,7 +80,7 @@ fn parts_in_the_way_of_a_tool_leave_first() {
     let step = plan.steps.iter().find(|step| fixed.part_names(&step.parts) == ["bolt_0"]).unwrap();
     let reach = step.tool.as_ref().unwrap();
     assert_eq!(fixed.part_names(&reach.blockers), ["roof"]);
-    let words = reach.describe(|parts| fixed.part_names(parts).join(", "));
+    let words = reach.describe(&fixed);
     assert!(words.starts_with("no tool reaches: roof is in the way of "), "{words}");
 }
 

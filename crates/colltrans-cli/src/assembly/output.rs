@@ -375,7 +375,7 @@ fn push_stage(text: &mut String, findings: &Analysis, stage: &Range<usize>) {
     for turns in findings.plan.describe_unscrewing(stage, Unscrewing::words) {
         let _ = writeln!(text, "     {}", escape_line(turns));
     }
-    for tool in findings.plan.describe_tools(assembly, stage) {
+    for tool in findings.plan.describe_tools(stage, |reach| reach.describe(assembly)) {
         let _ = writeln!(text, "     {}", escape_line(tool));
     }
     for ignored in steps.iter().filter_map(|step| step.describe_ignored(assembly)) {
